@@ -144,10 +144,10 @@ def pack_request(
         raise UsageError(
             "--evidence packs a whole audit: when all parts have ended, run drivelint merge and then drivelint pack"
         )
-    from drivelint.pack import PackRequest, ready
+    from drivelint.pack import PackRequest, signing_key_of_valid_request
 
     request = PackRequest(Path(result), evidence, sign, date=parse_pack_date(None), overwrite=overwrite)
-    ready(request)
+    signing_key_of_valid_request(request)
     return request
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.incident import IncidentRequest, open_case
+from drivelint.incident import IncidentRequest, judge_parties_again
 from tests.explain.checked import check
 
 if TYPE_CHECKING:
@@ -28,4 +28,4 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def case_of(folder: Path) -> CaseOf:
-    return cache(lambda name: open_case(IncidentRequest(name, folder)))
+    return cache(lambda name: judge_parties_again(IncidentRequest(name, folder)))

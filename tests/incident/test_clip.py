@@ -19,8 +19,8 @@ from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import ASSUMED_SIZE_CHECK, IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
-from drivelint.incident import IncidentRequest, clip, open_case
-from drivelint.incident.sheet import content
+from drivelint.incident import IncidentRequest, clip, judge_parties_again
+from drivelint.incident.sheet import template_values
 from drivelint.report.inputs import input_notes
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -107,7 +107,7 @@ def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pyte
     result = checked(out, log, map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"))
     row = next(row for row in findings(result) if row["rule_id"].endswith("safe-distance-ahead"))
     spans = ((0, 0.1), (5, 5))
-    monkeypatch.setattr(clip, "SPANS_S", spans)
+    monkeypatch.setattr(clip, "TRIED_PADDINGS_S", spans)
     written = clip.write_clip(ConvertRequest(str(log), "mcap", tmp_path / "clip"), row["finding_id"], out, None)
     assert "as 0 s and 0.1 s do not give it" in written.notes[-1]
     assert same(judged_alone(written.path, row["rule_id"]), row)
@@ -190,7 +190,7 @@ def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_f
     again = checked(tmp_path / "alone", cut(log, tmp_path / "log", tmp_path / "clip", row))
     (own,) = [each for each in findings(again) if each["unit"] == "m/s2"]
     told = [
-        content(open_case(IncidentRequest(name["finding_id"], tmp_path / folder)))
+        template_values(judge_parties_again(IncidentRequest(name["finding_id"], tmp_path / folder)))
         for name, folder in ((row, "log"), (own, "alone"))
     ]
     assert "sizes are assumed, not recorded" in told[0]["rests"] == told[1]["rests"]

@@ -9,9 +9,9 @@ import pytest
 
 from drivelint.catalogue import load_rules
 from drivelint.catalogue.header import EXCUSES_TAG
-from drivelint.incident.breaches import ADVICE, without_advice
-from drivelint.incident.conduct import conduct
-from drivelint.incident.fitting import Reason, first_fitting, fit, shared_reasons
+from drivelint.incident.breaches import ADVICE_VERBS, reason_without_advice
+from drivelint.incident.conduct import conduct_texts_and_counts
+from drivelint.incident.fitting import UndecidedReason, extract_shared_reasons, first_fitted_texts, fit_conduct_lists
 from drivelint.reasons.reason_text import texts_of_shared_codes
 
 S = 1_000_000_000
@@ -44,8 +44,8 @@ def finding(rule: str, copies: tuple[int, int] | None, **said: Any) -> dict[str,
 
 
 def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
-    found = conduct(verdicts, findings, RULES, SPAN, 0, touched=touched)
-    fit([found], 0, 0)
+    found = conduct_texts_and_counts(verdicts, findings, RULES, SPAN, 0, is_about_contact=touched)
+    fit_conduct_lists([found], 0, 0)
     return found
 
 
@@ -74,7 +74,7 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
         **RULES["limit"],
         "params": [{"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}],
     }
-    (line,) = conduct([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
+    (line,) = conduct_texts_and_counts([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
     assert line == "speed 5.90 m/s (at most 18.30 m/s, including 0.45 m/s tolerance; 0.00 to 7.00 s)"
     bound = {**part, "cause_code": "lower_bound"}
     assert told([bound], [])["kept"].texts == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
@@ -117,7 +117,7 @@ def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
 
 
 REASONS = [
-    Reason(f"Why number {n:02}", tuple(f"\u201cTitle {n:02}.{k} of a rule\u201d" for k in range(20 - n)))
+    UndecidedReason(f"Why number {n:02}", tuple(f"\u201cTitle {n:02}.{k} of a rule\u201d" for k in range(20 - n)))
     for n in range(20)
 ]
 
@@ -125,7 +125,7 @@ REASONS = [
 def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
     """Twenty reasons whose titles are too long for the page are told, the longest by the number of their rules."""
     party: dict[str, Any] = {"reasons": list(REASONS)}
-    fit([party], 0, 0)
+    fit_conduct_lists([party], 0, 0)
     shown, more, is_short = party["reasons"]
     assert (len(shown), more, is_short) == (20, 0, True)
     assert shown[0] == "Why number 00 (20 rules)"
@@ -135,14 +135,14 @@ def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
 
 def test_reasons_come_before_what_the_other_lists_would_take() -> None:
     party: dict[str, Any] = {"kept": ["a measure of a rule that was kept"] * 200, "reasons": list(REASONS)}
-    fit([party], 0, 0)
+    fit_conduct_lists([party], 0, 0)
     assert party["reasons"].more == 0
     assert party["kept"].more > 100
 
 
 def test_reasons_that_do_not_fit_are_counted() -> None:
     party: dict[str, Any] = {"reasons": list(REASONS)}
-    fit([party], 0, 3300)
+    fit_conduct_lists([party], 0, 3300)
     assert len(party["reasons"].texts) + party["reasons"].more == 20
     assert party["reasons"].more > 0
 
@@ -150,15 +150,15 @@ def test_reasons_that_do_not_fit_are_counted() -> None:
 def test_what_is_undecided_of_both_for_the_same_reason_is_told_once() -> None:
     first: dict[str, Any] = {"reasons": REASONS[:3]}
     second: dict[str, Any] = {"reasons": [*REASONS[1:4], REASONS[0]._replace(titles=("another",))]}
-    assert shared_reasons([first, second]) == {"reasons": REASONS[1:3]}
+    assert extract_shared_reasons([first, second]) == {"reasons": REASONS[1:3]}
     assert first["reasons"] == REASONS[:1]
     assert second["reasons"] == [REASONS[3], REASONS[0]._replace(titles=("another",))]
-    assert shared_reasons([{"reasons": REASONS}, {"not_judged": "a pedestrian"}]) == {"reasons": []}
+    assert extract_shared_reasons([{"reasons": REASONS}, {"not_judged": "a pedestrian"}]) == {"reasons": []}
 
 
 def test_texts_that_do_not_fit_are_counted() -> None:
-    assert first_fitting(["a" * 10] * 5, 30) == (["a" * 10] * 2, 3, False)
-    assert first_fitting([], 30) == ([], 0, False)
+    assert first_fitted_texts(["a" * 10] * 5, 30) == (["a" * 10] * 2, 3, False)
+    assert first_fitted_texts([], 30) == ([], 0, False)
 
 
 def test_advice_begins_with_a_known_word() -> None:
@@ -169,9 +169,9 @@ def test_advice_begins_with_a_known_word() -> None:
     ]
     plain = [text.advice for text in texts if text.advice]
     assert len(plain) > 50
-    assert sum(advice.split()[0] in ADVICE for advice in plain) > 0.9 * len(plain)
-    assert without_advice("no map: give one with --map") == "no map"
-    assert without_advice("rule x: did not end") == "rule x: did not end"
+    assert sum(advice.split()[0] in ADVICE_VERBS for advice in plain) > 0.9 * len(plain)
+    assert reason_without_advice("no map: give one with --map") == "no map"
+    assert reason_without_advice("rule x: did not end") == "rule x: did not end"
 
 
 def test_a_rule_that_excuses_something_says_so_by_its_tag() -> None:

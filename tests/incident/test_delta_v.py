@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
-from drivelint.incident.delta_v import delta_v, told_delta_v
+from drivelint.incident.delta_v import delta_v_text, greatest_delta_v
 from drivelint.incident.motion import Motion
 from tests.incident.straight import STEP_S, steps
 
@@ -30,34 +30,34 @@ def struck(*after: tuple[float, float], n: int = 20) -> Motion:
 
 
 def test_a_vehicle_that_is_thrown_back_or_aside_changes_its_velocity_by_more_than_its_speed() -> None:
-    back = delta_v(struck((-1.0, 0.0), (0.5, 0.0)), 0, BEFORE)
+    back = greatest_delta_v(struck((-1.0, 0.0), (0.5, 0.0)), 0, BEFORE)
     assert back is not None
     assert (back.mps, back.at_s) == pytest.approx((6.0, 0.0))
     assert not back.is_least
-    aside = delta_v(struck((4.0, 1.0), (0.0, 5.0)), 0, BEFORE)  # the speed is the same
+    aside = greatest_delta_v(struck((4.0, 1.0), (0.0, 5.0)), 0, BEFORE)  # the speed is the same
     assert aside is not None
     assert (aside.mps, aside.at_s) == pytest.approx((math.hypot(5.0, 5.0), 0.1))
 
 
 def test_what_comes_after_the_impact_is_none_of_it() -> None:
-    found = delta_v(struck((4.0, 0.0), (4.0, 0.0), (4.0, 0.0), (4.0, 0.0), (0.0, 0.0)), 0, BEFORE)
+    found = greatest_delta_v(struck((4.0, 0.0), (4.0, 0.0), (4.0, 0.0), (4.0, 0.0), (0.0, 0.0)), 0, BEFORE)
     assert found is not None
     assert found.mps == pytest.approx(1.0)
 
 
 def test_a_velocity_that_is_missing_leaves_it_unknown() -> None:
     for after in ([(0.0, np.nan)], [(0.0, 0.0), (np.nan, 0.0), (0.0, 0.0)]):
-        assert delta_v(struck(*after), 0, BEFORE) is None
+        assert greatest_delta_v(struck(*after), 0, BEFORE) is None
     hole = struck((0.0, 0.0))
     rows = np.array([i for i in range(20) if i not in {11, 12}])
     hole = replace(hole, t=hole.t[rows], velocity=(hole.velocity[0][:, rows], hole.velocity[1][:, rows]))
-    assert delta_v(hole, 0, BEFORE) is None
-    assert delta_v(struck((0.0, 0.0), n=BEFORE + 1), 0, BEFORE) is None
-    assert delta_v(replace(struck((0.0, 0.0)), velocity=(np.full((2, 20), np.nan),) * 2), 1, BEFORE) is None
+    assert greatest_delta_v(hole, 0, BEFORE) is None
+    assert greatest_delta_v(struck((0.0, 0.0), n=BEFORE + 1), 0, BEFORE) is None
+    assert greatest_delta_v(replace(struck((0.0, 0.0)), velocity=(np.full((2, 20), np.nan),) * 2), 1, BEFORE) is None
 
 
 def test_a_recording_that_ends_in_the_impact_gives_a_bound() -> None:
-    found = delta_v(struck((0.0, 0.0), n=BEFORE + 2), 0, BEFORE)
+    found = greatest_delta_v(struck((0.0, 0.0), n=BEFORE + 2), 0, BEFORE)
     assert found is not None
     assert found.mps == pytest.approx(5.0)
     assert found.is_least
@@ -69,7 +69,7 @@ def test_words(case_of: CaseOf) -> None:
 
     def told(check: str, actor_id: str | None) -> str:
         mine = with_quality_finding(trace, QualityFinding(check, "warning", "said", actor_id=actor_id))
-        return told_delta_v(motion, 0, BEFORE, mine, "ego")
+        return delta_v_text(motion, 0, BEFORE, mine, "ego")
 
     assert (
         told("gap", None)
@@ -78,10 +78,10 @@ def test_words(case_of: CaseOf) -> None:
     assert told("velocity_filtered", "ego").startswith("not known: the log has only a mean")
     assert told("velocity_filtered", "somebody else") == told("gap", None)
     assert told("velocity_derived", None).endswith("; velocities computed from positions")
-    assert told_delta_v(motion, 0, None, trace, "ego") == ""
-    short = told_delta_v(struck((0.0, 0.0), n=BEFORE + 2), 0, BEFORE, trace, "ego")
+    assert delta_v_text(motion, 0, None, trace, "ego") == ""
+    short = delta_v_text(struck((0.0, 0.0), n=BEFORE + 2), 0, BEFORE, trace, "ego")
     assert short.startswith("at least 5.0 m/s")
-    unknown = told_delta_v(struck((np.nan, 0.0)), 0, BEFORE, trace, "ego")
+    unknown = delta_v_text(struck((np.nan, 0.0)), 0, BEFORE, trace, "ego")
     assert unknown == "not known: its velocity is missing in part, from \u22120.10 s to +0.30 s"
 
 
@@ -97,5 +97,5 @@ def test_words(case_of: CaseOf) -> None:
 )
 def test_a_change_of_direction_alone_may_be_steering(case_of: CaseOf, after: tuple[float, float], told: str) -> None:
     trace = case_of("no-collision@collision").drive.trace
-    said = told_delta_v(struck(after), 0, BEFORE, trace, "ego")
+    said = delta_v_text(struck(after), 0, BEFORE, trace, "ego")
     assert said.endswith(f"to 0 s{told}")

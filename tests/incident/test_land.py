@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.incident.land import is_at_sea
-from drivelint.incident.place import Place, sea_note
+from drivelint.incident.land import is_far_at_sea
+from drivelint.incident.place import Place, doubtful_at_sea_text
 
 LAND = {
     "Bristol": (51.489, -2.5),
@@ -30,15 +30,17 @@ SEA = {
 
 @pytest.mark.parametrize("name", LAND)
 def test_land_is_not_doubted(name: str) -> None:
-    assert not is_at_sea(*LAND[name])
-    assert sea_note(Place(0, *LAND[name], None, None, None), "map") == ""
+    assert not is_far_at_sea(*LAND[name])
+    assert doubtful_at_sea_text(Place(0, *LAND[name], None, None, None), "map") == ""
 
 
 @pytest.mark.parametrize("name", SEA)
 def test_a_place_at_sea_is_doubted(name: str) -> None:
-    assert is_at_sea(*SEA[name])
-    assert "the map's geo reference, doubtful: in the sea" in sea_note(Place(0, *SEA[name], None, None, None), "map")
+    assert is_far_at_sea(*SEA[name])
+    assert "the map's geo reference, doubtful: in the sea" in doubtful_at_sea_text(
+        Place(0, *SEA[name], None, None, None), "map"
+    )
 
 
 def test_an_unknown_place_is_not_doubted() -> None:
-    assert sea_note(Place(0, None, None, 1.0, 2.0, None), "log") == ""
+    assert doubtful_at_sea_text(Place(0, None, None, 1.0, 2.0, None), "log") == ""

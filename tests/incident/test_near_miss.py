@@ -10,9 +10,9 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.incident import IncidentRequest, other_drives, render, sheet_ids
+from drivelint.incident import IncidentRequest, other_matching_drives, possible_sheet_ids, sheet_html
 from drivelint.incident.finding import named_finding, near_misses
-from drivelint.incident.sheet import content
+from drivelint.incident.sheet import template_values
 from drivelint.pack import sheets
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
@@ -31,13 +31,13 @@ pytestmark = pytest.mark.ci
 def test_it_says_that_the_rule_was_kept_and_by_how_much(case_of: CaseOf) -> None:
     log = fixture_log(OVERTAKE / "near_miss.csv")
     least, at = min((gap(log["ego"][t], log["oncoming"][t]), t) for t in log["ego"] if t in log["oncoming"])
-    told = content(case_of(NAME))
+    told = template_values(case_of(NAME))
     assert told["title"] == f"Near miss at {at:.2f} s: \u201cNo collision\u201d was kept by {least:.2f} m"
     assert told["what"].endswith(f"kept by {least:.2f} m")
     assert told["near"]
     assert not told["contact"]
     assert told["before"] is None
-    text = re.sub(r"<[^>]+>", "", render(case_of(NAME)).decode().partition("</style>")[2])
+    text = re.sub(r"<[^>]+>", "", sheet_html(case_of(NAME)).decode().partition("</style>")[2])
     assert "Near miss: the rule \u201cNo collision\u201d was not broken; it was kept by less than 0.50 m." in text
     assert "Other rules were broken around this time: see page 2." in text
     assert "the same near miss." in text
@@ -58,8 +58,8 @@ def test_its_id_names_it_and_its_sheet_is_of_the_result(folder: Path, case_of: C
     result, row = load_result(folder), case_of(NAME).finding.row
     again = named_finding(result, row["finding_id"], with_near_misses=True)
     assert (again.row["rule_id"], again.row["drive_id"], again.is_near_miss) == (row["rule_id"], row["drive_id"], True)
-    assert f"--incident {row['finding_id']}" in content(case_of(NAME))["commands"][1]
-    assert row["finding_id"] in sheet_ids(result)
+    assert f"--incident {row['finding_id']}" in template_values(case_of(NAME))["commands"][1]
+    assert row["finding_id"] in possible_sheet_ids(result)
     with pytest.raises(UsageError, match="no near miss has an id"):
         named_finding(result, "near-miss-x", with_near_misses=True)
 
@@ -67,8 +67,8 @@ def test_its_id_names_it_and_its_sheet_is_of_the_result(folder: Path, case_of: C
 def test_its_sheet_is_packed(folder: Path, case_of: CaseOf) -> None:
     page = folder / "incidents" / f"{case_of(NAME).finding.row['finding_id']}.html"
     page.parent.mkdir(exist_ok=True)
-    page.write_bytes(render(case_of(NAME)))
-    packed = sheets.of_result(folder, load_result(folder), run_request.load(folder))
+    page.write_bytes(sheet_html(case_of(NAME)))
+    packed = sheets.sheets_of_result(folder, load_result(folder), run_request.load(folder))
     assert packed == {f"data/incidents/{page.name}": page.read_bytes()}
     page.unlink()
 
@@ -85,4 +85,4 @@ def test_a_finding_comes_before_a_near_miss(folder: Path) -> None:
 
 
 def test_other_drives_with_near_misses_are_named(folder: Path) -> None:
-    assert other_drives(IncidentRequest(NAME, folder)) == []
+    assert other_matching_drives(IncidentRequest(NAME, folder)) == []

@@ -9,7 +9,7 @@ import pytest
 
 import drivelint
 from drivelint.demo import ROAD_FILE
-from drivelint.incident import IncidentRequest, open_case
+from drivelint.incident import IncidentRequest, judge_parties_again
 from drivelint.incident.motion import Motion
 
 
@@ -23,5 +23,5 @@ def test_offsets_from_the_lane(tmp_path: Path, has_map: bool) -> None:
     ways = [actor["path"] for row in result.scenes.rows() for actor in row["actors"] if actor["path"]]
     assert ways
     assert any(point["d_m"] is not None for way in ways for point in way) == has_map
-    case = open_case(IncidentRequest(result.findings.rows()[0]["finding_id"], tmp_path / "out"))
+    case = judge_parties_again(IncidentRequest(result.findings.rows()[0]["finding_id"], tmp_path / "out"))
     assert any(np.isfinite(offset).any() for offset in Motion.of_steps(case.again.steps, 0).lane_offset) == has_map

@@ -13,8 +13,8 @@ import pytest
 
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
-from drivelint.incident import IncidentRequest, open_case, pdf, render
-from drivelint.incident.sheet import content
+from drivelint.incident import IncidentRequest, judge_parties_again, pdf, sheet_html
+from drivelint.incident.sheet import template_values
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.road.geo_reference import tangent_plane_frame
@@ -76,7 +76,7 @@ def is_legible(page: Page) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) -> None:
     html = tmp_path / "sheet.html"
-    html.write_bytes(render(case_of(name)))
+    html.write_bytes(sheet_html(case_of(name)))
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
         is_legible(page)
@@ -92,10 +92,10 @@ def test_a_real_contact_is_on_two_pages_with_all_that_was_broken(run: str, tmp_p
         (str(data / f"{run}.csv"),), map=data / "t_junction.xodr", mapping="carla-testbench", out=tmp_path
     )
     write(check(asked, Silent()), tmp_path)
-    case = open_case(IncidentRequest("contact-signature", tmp_path))
-    assert [told["broken"].more for told in content(case)["conduct"]] == [0, 0]
+    case = judge_parties_again(IncidentRequest("contact-signature", tmp_path))
+    assert [told["broken"].more for told in template_values(case)["conduct"]] == [0, 0]
     html = tmp_path / "sheet.html"
-    html.write_bytes(render(case))
+    html.write_bytes(sheet_html(case))
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page)
         is_legible(page)
@@ -122,7 +122,7 @@ def crowded(case: Case, *, all_broken: bool) -> Case:
 @pytest.mark.ci
 def test_a_case_with_many_reasons_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
-    page_bytes = render(crowded(case_of(NAMES[0]), all_broken=False))
+    page_bytes = sheet_html(crowded(case_of(NAMES[0]), all_broken=False))
     html.write_bytes(page_bytes)
     assert re.search(rb"and \d+ more reasons", page_bytes)
     with Page(tmp_path / "profile", html.as_uri()) as page:
@@ -134,7 +134,7 @@ def test_a_case_with_many_reasons_fits(case_of: CaseOf, tmp_path: Path) -> None:
 def test_what_does_not_fit_is_on_further_pages(case_of: CaseOf, tmp_path: Path) -> None:
     """Nothing that was broken is left out or printed small."""
     case = crowded(case_of(NAMES[0]), all_broken=True)
-    told, html = content(case), tmp_path / "sheet.html"
+    told, html = template_values(case), tmp_path / "sheet.html"
     n_pages = 2 + len(told["further"])
     assert n_pages > 2
     for party in told["conduct"]:
@@ -142,7 +142,7 @@ def test_what_does_not_fit_is_on_further_pages(case_of: CaseOf, tmp_path: Path) 
         texts = [*party["broken"].texts, *(text for part in further if part.part == "broken" for text in part.texts)]
         assert len(texts) == party["n"]["broken"]
         assert len(set(texts)) == len(texts)
-    html.write_bytes(render(case))
+    html.write_bytes(sheet_html(case))
     with Page(tmp_path / "profile", html.as_uri()) as page:
         fits(page, n_pages)
         is_legible(page)
@@ -187,7 +187,7 @@ def crowded_first_page(case: Case) -> Case:
 @pytest.mark.slow
 def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
-    page_bytes = render(crowded_first_page(case_of("contact-signature@collision")))
+    page_bytes = sheet_html(crowded_first_page(case_of("contact-signature@collision")))
     for said in (
         b"It is based on",
         b"earlier<br>",
@@ -206,10 +206,10 @@ def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
 
 @pytest.mark.ci
 def test_pdf_has_two_pages_and_no_clock(case_of: CaseOf) -> None:
-    html = render(case_of(NAMES[0]))
+    html = sheet_html(case_of(NAMES[0]))
     browser = pdf.find_browser()
-    printed = pdf.print_page(html, browser)
+    printed = pdf.pdf_of_page(html, browser)
     assert printed.startswith(b"%PDF")
     assert len(re.findall(rb"/Type\s*/Page\b(?!s)", printed)) == 2
     assert re.findall(rb"/MediaBox\s*\[0 0 (\d+)", printed)[0] in {b"595", b"594", b"596"}
-    assert pdf.print_page(html, browser) == printed
+    assert pdf.pdf_of_page(html, browser) == printed

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.incident.place import place
+from drivelint.incident.place import place_at_moment
 from drivelint.incident.scene import scene_at
-from drivelint.incident.sheet import content
+from drivelint.incident.sheet import template_values
 
 if TYPE_CHECKING:
     from tests.incident.conftest import CaseOf
@@ -51,11 +51,11 @@ def test_the_place_of_a_contact_is_that_of_its_first_step(case_of: CaseOf) -> No
     row, first = case.finding.row, case.finding.row["t_start_ns"]
     deeper = replace(case, finding=replace(case.finding, row={**row, "t_worst_ns": first + S, "x_m": 0.0, "lat": 1.0}))
     step = next(each for each in case.again.steps.to_pylist() if each["t_ns"] == first)
-    found = place(deeper)
+    found = place_at_moment(deeper)
     assert (found.t_ns, found.x_m, found.y_m, found.lanelet_id) == (first, step["x_m"], step["y_m"], step["lanelet_id"])
-    whole = place(case)
+    whole = place_at_moment(case)
     assert whole.t_ns == row["t_worst_ns"]
     if row["t_worst_ns"] == first:
         assert (found.lat, found.lon) == (whole.lat, whole.lon) or found.lat == pytest.approx(whole.lat, abs=1e-7)
-    told = content(deeper)
+    told = template_values(deeper)
     assert told["placed"] == told["when"] == told["drawn_at"]

@@ -21,12 +21,12 @@ from drivelint import catalogue, cli
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
 from drivelint.errors import UsageError
-from drivelint.incident import IncidentRequest, open_case, other_drives, render, write_incident
-from drivelint.incident.command import commands
+from drivelint.incident import IncidentRequest, judge_parties_again, other_matching_drives, sheet_html, write_sheet
+from drivelint.incident.command import reproducing_commands
 from drivelint.incident.finding import named_finding
 from drivelint.incident.motion import Motion
-from drivelint.incident.sheet import _rests_on, content
-from drivelint.incident.sizes import size_source
+from drivelint.incident.sheet import _sudden_contact_sentence, template_values
+from drivelint.incident.sizes import size_source_text
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result.load import load_result
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def collision(case_of: CaseOf) -> dict[str, Any]:
-    return content(case_of("no-collision@collision"))
+    return template_values(case_of("no-collision@collision"))
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +119,7 @@ def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     assert not isinstance(case.other_party, str)
     assert case.other_party is not None
     assert case.other_party.verdicts == result.verdicts.to_pylist()
-    told = content(case)["conduct"]
+    told = template_values(case)["conduct"]
     assert [party["id"] for party in told] == ["ego", "oncoming"]
     failed = len(set(result.findings["rule_id"].to_pylist()))
     assert told[1]["n"]["broken"] == failed > 0
@@ -146,7 +146,9 @@ def test_commands_give_the_same_sheet_again(
             cli.main()
     written = list((tmp_path / "again" / "incidents").iterdir())
     assert [file.name for file in written] == [f"{collision['row']['finding_id']}.html"]
-    assert written[0].read_bytes() == render(case_of("no-collision@collision"))  # files are named without their folders
+    assert written[0].read_bytes() == sheet_html(
+        case_of("no-collision@collision")
+    )  # files are named without their folders
 
 
 @pytest.mark.ci
@@ -155,7 +157,7 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     stable = case.result.rules["rule_id"].to_pylist()
 
     def selected(asked_for: list[str], named: Sequence[str] = ()) -> list[str]:
-        words = shlex.split(commands(case.run_options, case.finding, asked_for, named)[0])
+        words = shlex.split(reproducing_commands(case.run_options, case.finding, asked_for, named)[0])
         return [word for i, word in enumerate(words) if {"--rules", "--ignore"} & {word, words[i - 1]}]
 
     ukhc = {rule.id for rule in catalogue.load_rules().values() if rule.pack == "ukhc" and rule.status == "stable"}
@@ -193,7 +195,7 @@ def test_what_happened_in_a_sentence(collision: dict[str, Any], recorded: Log) -
 @pytest.mark.ci
 def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
     """A title is true where its rule is kept: unquoted, "rule broken: No collision" reads as none."""
-    page = render(case_of("no-collision@collision")).decode()
+    page = sheet_html(case_of("no-collision@collision")).decode()
     text = re.sub(r"<[^>]+>", "", page)
     assert "rule broken: \u201cNo collision\u201d" in text
     assert re.search(r"(?<!\u201c)No collision", text.partition("</style>")[2].partition("Incident sheet")[2]) is None
@@ -219,34 +221,34 @@ def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -
 def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     trace, said = case.drive.trace, "size from the mapping 'mapping', not recorded"
-    assert [size_source(trace, who) for who in case.finding.parties] == [said] * 2
-    assert render(case).decode().count(str(escape(said))) == 2
+    assert [size_source_text(trace, who) for who in case.finding.parties] == [said] * 2
+    assert sheet_html(case).decode().count(str(escape(said))) == 2
     tables = trace.tables["quality"]
     recorded = replace(
         trace, tables={**trace.tables, "quality": tables.filter(pc.field("check_id") != ASSUMED_SIZE_CHECK)}
     )
     by_user = with_quality_finding(recorded, QualityFinding(ASSUMED_SIZE_CHECK, "info", "said", actor_id="ego"))
-    assert [size_source(by_user, who) for who in ("ego", "other")] == ["said", ""]
+    assert [size_source_text(by_user, who) for who in ("ego", "other")] == ["said", ""]
 
 
 @pytest.mark.ci
 def test_a_clip_says_so(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     drive = {**case.finding.drive, "file_name": "collision-clip-0a1b2c3d.mcap"}
-    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    page = sheet_html(replace(case, finding=replace(case.finding, drive=drive))).decode()
     assert "of a clip that was cut from the log collision" in page
-    assert "of a clip" not in render(case).decode()
+    assert "of a clip" not in sheet_html(case).decode()
 
 
 @pytest.mark.slow
 def test_same_case_same_bytes(folder: Path, case_of: CaseOf) -> None:
     name = "safe-distance-ahead@collision"
-    assert render(open_case(IncidentRequest(name, folder))) == render(case_of(name))
+    assert sheet_html(judge_parties_again(IncidentRequest(name, folder))) == sheet_html(case_of(name))
 
 
 @pytest.mark.slow
 def test_required_distance_is_drawn(case_of: CaseOf) -> None:
-    told = content(case_of("safe-distance-ahead@collision"))
+    told = template_values(case_of("safe-distance-ahead@collision"))
     assert not told["contact"]
     (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]
     required = [line["name"] for line in chart["lines"] if line["kind"] == "limit"]
@@ -261,12 +263,12 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
     case = case_of("no-collision@collision")
     row = {**case.finding.row, "n_copies": None if stays is None else 100, "n_stays": stays}
     alone = replace(case.result, findings=case.result.findings.slice(0, 0))
-    surest = render(replace(case, finding=replace(case.finding, row=row))).decode()
+    surest = sheet_html(replace(case, finding=replace(case.finding, row=row))).decode()
     assert ("the contact is <b>sure</b> by" in surest) is (stays == 53)  # as the speeds say
     assert "Possible contact" not in surest
     assert "A and B collided head-on" in surest
     case = replace(case, result=alone)
-    page = render(replace(case, finding=replace(case.finding, row=row))).decode()
+    page = sheet_html(replace(case, finding=replace(case.finding, row=row))).decode()
     assert said in page
     assert (f"{stays} of 100 copies" in page) is (stays is not None)
     assert ("Possible contact" in page) is (stays == 53)
@@ -280,7 +282,7 @@ def test_the_worst_contact_needs_no_name(folder: Path) -> None:
     assert found.is_contact
     assert found.drive["drive_id"].startswith("collision")
     assert named_finding(result, f"contact@{found.drive['drive_id']}").row == found.row
-    assert other_drives(IncidentRequest("contact", folder)) == []
+    assert other_matching_drives(IncidentRequest("contact", folder)) == []
     with pytest.raises(UsageError, match="no finding is a contact in safe"):
         named_finding(result, "contact@safe")
 
@@ -301,14 +303,14 @@ def test_a_result_without_a_contact_names_its_nearest_miss(folder: Path) -> None
 @pytest.mark.ci
 def test_a_verdict_that_is_no_finding(folder: Path) -> None:
     with pytest.raises(UsageError, match=r"is pass, so it has no finding: .* failed there \(ukhc\."):
-        open_case(IncidentRequest("no-collision@safe", folder))
+        judge_parties_again(IncidentRequest("no-collision@safe", folder))
 
 
 @pytest.mark.ci
 def test_pdf_without_a_browser(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(UsageError, match="install chromium"):
-        write_incident(IncidentRequest("no-collision@collision", folder, pdf=True))
+        write_sheet(IncidentRequest("no-collision@collision", folder, pdf=True))
 
 
 @pytest.mark.slow
@@ -324,11 +326,14 @@ def test_a_log_that_is_gone(tmp_path: Path) -> None:
         moved = log.rename(tmp_path / "moved.csv")
         request = IncidentRequest("no-collision", out)
         if keep:
-            assert content(open_case(request))["again"] is not None
+            assert template_values(judge_parties_again(request))["again"] is not None
         else:
             with pytest.raises(UsageError, match="--trace FILE"):
-                open_case(request)
-            assert content(open_case(IncidentRequest("no-collision", out, trace=moved)))["again"] is not None
+                judge_parties_again(request)
+            assert (
+                template_values(judge_parties_again(IncidentRequest("no-collision", out, trace=moved)))["again"]
+                is not None
+            )
         moved.rename(log)
 
 
@@ -345,8 +350,8 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
         robustness=False,
     )
     write(run_check(options, Silent()), tmp_path)
-    case = open_case(IncidentRequest("contact-signature", tmp_path))
-    told = content(case)
+    case = judge_parties_again(IncidentRequest("contact-signature", tmp_path))
+    told = template_values(case)
     recorded = carla_log(log)
     # within one step both lose far more speed than a tyre can brake
     lost = {t: recorded["3"][round(t - 0.1, 3)].speed - recorded["3"][t].speed for t in recorded["3"] if t > 1}
@@ -379,10 +384,12 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert "sizes are assumed, not recorded" in told["rests"]
     motion = Motion.of_steps(case.again.steps, case.finding.moment_ns)
     unknown = np.full_like(motion.gap, np.nan)
-    assert "whether the boxes touch is not known (no gap is known" in _rests_on(case, replace(motion, gap=unknown))
+    assert "whether the boxes touch is not known (no gap is known" in _sudden_contact_sentence(
+        case, replace(motion, gap=unknown)
+    )
     one = np.where(motion.t == 0, motion.gap, unknown)
-    assert "whether the boxes touch is not known (least gap" in _rests_on(case, replace(motion, gap=one))
-    assert _rests_on(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
+    assert "whether the boxes touch is not known (least gap" in _sudden_contact_sentence(case, replace(motion, gap=one))
+    assert _sudden_contact_sentence(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
 
 
 @pytest.mark.ci
@@ -391,8 +398,8 @@ def test_a_rule_that_several_drives_broke_is_said_to_mean_the_worst(folder: Path
     every = load_result(folder).findings.select(["rule_id", "drive_id", "finding_id"]).to_pylist()
     drives = {row["drive_id"] for row in every if row["rule_id"] == "ukhc.r162.safe-distance-ahead"}
     assert len(drives) > 1
-    others = other_drives(IncidentRequest("safe-distance-ahead", folder))
+    others = other_matching_drives(IncidentRequest("safe-distance-ahead", folder))
     assert len(others) == len(drives) - 1
     assert set(others) < drives
-    assert other_drives(IncidentRequest("safe-distance-ahead@collision", folder)) == []
-    assert other_drives(IncidentRequest(every[0]["finding_id"], folder)) == []
+    assert other_matching_drives(IncidentRequest("safe-distance-ahead@collision", folder)) == []
+    assert other_matching_drives(IncidentRequest(every[0]["finding_id"], folder)) == []

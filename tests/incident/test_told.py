@@ -12,12 +12,12 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.drive.trace import TURNED_FRAME_CHECK
-from drivelint.incident import render
-from drivelint.incident.conduct import name_party
-from drivelint.incident.fitting import Reason, fit
+from drivelint.incident import sheet_html
+from drivelint.incident.conduct import conduct_with_party_name
+from drivelint.incident.fitting import UndecidedReason, fit_conduct_lists
 from drivelint.incident.judge import EgoRows
-from drivelint.incident.place import coordinates, inferred_side
-from drivelint.incident.sheet import content
+from drivelint.incident.place import coordinates_source_text, inferred_driving_side_text
+from drivelint.incident.sheet import template_values
 
 if TYPE_CHECKING:
     from tests.incident.conftest import CaseOf
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def collision(case_of: CaseOf) -> dict[str, Any]:
-    return content(case_of("no-collision@collision"))
+    return template_values(case_of("no-collision@collision"))
 
 
 @pytest.fixture(scope="module")
 def text(case_of: CaseOf) -> str:
-    page = render(case_of("no-collision@collision")).decode().partition("</style>")[2]
+    page = sheet_html(case_of("no-collision@collision")).decode().partition("</style>")[2]
     return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", page)))
 
 
@@ -84,7 +84,7 @@ def test_no_unit_is_written_in_two_ways(text: str) -> None:
 
 @pytest.mark.slow
 def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None:
-    told = content(case_of("safe-distance-ahead@collision"))
+    told = template_values(case_of("safe-distance-ahead@collision"))
     (chart,) = [chart for chart in told["strips"] if chart["title"].startswith("Gap")]
     limits = [line for line in chart["lines"] if line["kind"] == "limit"]
     assert len({line["label"] for line in limits}) == len(limits) > 1
@@ -95,8 +95,8 @@ def test_each_required_distance_has_its_name_at_its_dot(case_of: CaseOf) -> None
 @pytest.mark.ci
 def test_a_party_that_was_no_ego_is_not_in_the_report(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
-    assert [party["in_report"] for party in content(case)["conduct"]] == [True, False]
-    assert "not examined" in content(replace(case, other_party=None))["parties"][1]["lane"]
+    assert [party["in_report"] for party in template_values(case)["conduct"]] == [True, False]
+    assert "not examined" in template_values(replace(case, other_party=None))["parties"][1]["lane"]
 
 
 @pytest.mark.ci
@@ -123,10 +123,10 @@ def test_warnings_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     checks = [{"check_id": "c", "severity": "warning", "message": f"warning {n}: {'word ' * 20}"} for n in range(9)]
     drive = {**case.finding.drive, "quality": [*checks, {**checks[0], "message": "word " * 200}]}
-    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    page = sheet_html(replace(case, finding=replace(case.finding, drive=drive))).decode()
     assert re.search(r"warning 1: [word ]+; and 8 more in report.html", page)
     drive = {**drive, "quality": drive["quality"][-1:]}
-    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    page = sheet_html(replace(case, finding=replace(case.finding, drive=drive))).decode()
     assert "word ... (in full in report.html)</p>" in page
 
 
@@ -136,9 +136,9 @@ def test_contacts_that_do_not_fit_are_counted(case_of: CaseOf) -> None:
     rows = case.result.findings
     touched = rows.filter(pc.is_in(rows["rule_id"], pa.array(["ukhc.contact-signature"])))
     more = replace(case, result=replace(case.result, findings=pa.concat_tables([rows, touched, touched])))
-    n = len(content(case)["contacts"].texts)
-    assert content(more)["contacts"].more == n + 2 * touched.num_rows - 2 > 0
-    assert f"And {n + 2 * touched.num_rows - 2} more contact" in render(more).decode()
+    n = len(template_values(case)["contacts"].texts)
+    assert template_values(more)["contacts"].more == n + 2 * touched.num_rows - 2 > 0
+    assert f"And {n + 2 * touched.num_rows - 2} more contact" in sheet_html(more).decode()
 
 
 @pytest.mark.ci
@@ -147,7 +147,7 @@ def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
     said = "cut from collision.csv, SHA-256 0123abcd: 0.00 s to 9.00 s of it"
     check = {"check_id": "clip", "severity": "info", "message": said}
     drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
-    page = render(replace(case, finding=replace(case.finding, drive=drive))).decode()
+    page = sheet_html(replace(case, finding=replace(case.finding, drive=drive))).decode()
     assert said in page
     assert "Warnings on the log" not in page  # it is none
 
@@ -155,15 +155,20 @@ def test_sheet_of_a_clip_prints_the_hash_of_the_log(case_of: CaseOf) -> None:
 @pytest.mark.ci
 def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
-    assert coordinates(case).startswith("the recording's coordinates")
-    assert "turned" not in coordinates(case)
+    assert coordinates_source_text(case).startswith("the recording's coordinates")
+    assert "turned" not in coordinates_source_text(case)
     check = {"check_id": TURNED_FRAME_CHECK, "severity": "info", "message": "turned"}
     drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
     turned = replace(case, finding=replace(case.finding, drive=drive))
-    assert coordinates(turned) == "the recording's coordinates with the sign of y changed, as its frame is left-handed"
-    assert coordinates(turned) in html.unescape(render(turned).decode())
+    assert (
+        coordinates_source_text(turned)
+        == "the recording's coordinates with the sign of y changed, as its frame is left-handed"
+    )
+    assert coordinates_source_text(turned) in html.unescape(sheet_html(turned).decode())
     drive = {**drive, "quality": [*drive["quality"], {**check, "check_id": "clip"}]}
-    assert coordinates(replace(case, finding=replace(case.finding, drive=drive))) == "the clip's coordinates"
+    assert (
+        coordinates_source_text(replace(case, finding=replace(case.finding, drive=drive))) == "the clip's coordinates"
+    )
 
 
 @pytest.mark.ci
@@ -175,7 +180,7 @@ def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
     for name, by in (("offset_x_m", 2.618), ("offset_y_m", -3.113)):
         place = place.set_column(place.column_names.index(name), name, pa.array([by]))
     road = replace(case.drive.environment, tables={**tables, "environment": place})
-    moved = coordinates(replace(case, drive=replace(case.drive, environment=road)))
+    moved = coordinates_source_text(replace(case, drive=replace(case.drive, environment=road)))
     assert moved.endswith("(the map was moved by +2.618 m, \u22123.113 m)")
 
 
@@ -183,7 +188,7 @@ def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
     ("source", "said"), [("junctions", True), ("default", True), ("option", False), ("attribute", False)]
 )
 def test_side_of_the_road_that_nobody_gave(source: str, *, said: bool) -> None:
-    told = inferred_side({"handedness": "lht", "handedness_source": source})
+    told = inferred_driving_side_text({"handedness": "lht", "handedness_source": source})
     assert told.startswith("Left-hand traffic: ") is said
 
 
@@ -196,7 +201,7 @@ def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dic
             assert f"{len(party['beside'])} not counted, " in text
     told = text.partition("What each party did")[2].partition("To check it")[0]
     assert "the ego" not in re.sub("\u201c[^\u201d]*\u201d", "", told).lower()
-    assert name_party({"kept": ["\u201cOut of the ego's space\u201d: the ego's own"]}, "B")["kept"] == [
+    assert conduct_with_party_name({"kept": ["\u201cOut of the ego's space\u201d: the ego's own"]}, "B")["kept"] == [
         "\u201cOut of the ego's space\u201d: B's own"
     ]
 
@@ -209,10 +214,10 @@ def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
             "broken": [f"{n} " + "b" * 140 for n in range(7)],
             "kept": ["k" * 60] * 12,
             "excused": ["e" * 30] * 3,
-            "reasons": [Reason(f"{n} " + "r" * 80, ("t" * 30,) * 3) for n in range(6)],
+            "reasons": [UndecidedReason(f"{n} " + "r" * 80, ("t" * 30,) * 3) for n in range(6)],
         },
         {"broken": ["b" * 140], "kept": ["k" * 60] * 8, "excused": [], "reasons": []},
     ]
-    fit(parties, 2, taken)
+    fit_conduct_lists(parties, 2, taken)
     assert [told["broken"].more for told in parties] == [0, 0]
     assert (parties[0]["kept"].more > 0) is (taken > 0)

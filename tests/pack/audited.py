@@ -13,8 +13,8 @@ from drivelint.audit.driver import empty_tables
 from drivelint.audit.summary import summary_of_all_drives
 from drivelint.audit.worker import TABLES, receipt_fields
 from drivelint.fleet_report.audit_views import open_packed_audit
-from drivelint.pack.audits.statement import statement
-from drivelint.pack.signature import envelope, private_key
+from drivelint.pack.audits.statement import in_toto_statement
+from drivelint.pack.signature import private_key, signed_envelope
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 from tests.pack.packed import STATEMENT, change_evidence, make_key, make_pack, rehash
@@ -100,6 +100,6 @@ def follow_tables(pack: Path) -> None:
 def sign_anew(pack: Path, key: Path) -> None:
     """Let the statement follow from the changed pack, and sign it: what the owner of a key can forge."""
     rehash(pack)
-    said = statement(pack, json.loads((pack / "data/evidence.json").read_text("utf-8")))
-    (pack / STATEMENT).write_bytes(envelope(said, private_key(key)))
+    said = in_toto_statement(pack, json.loads((pack / "data/evidence.json").read_text("utf-8")))
+    (pack / STATEMENT).write_bytes(signed_envelope(said, private_key(key)))
     rehash(pack, payload=False)

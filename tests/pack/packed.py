@@ -17,9 +17,9 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from drivelint.guide import FOLDER
 from drivelint.pack import PackRequest, write_pack
-from drivelint.pack.contents import summary_of
-from drivelint.pack.signature import envelope, key_id, private_key
-from drivelint.pack.statement import statement
+from drivelint.pack.contents import packed_summary
+from drivelint.pack.signature import key_id, private_key, signed_envelope
+from drivelint.pack.statement import in_toto_statement
 from drivelint.report import summary
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result.load import load_result
@@ -121,8 +121,8 @@ def sign_anew(pack: Path, key: Path) -> None:
     """Let everything follow from the changed tables, rules and `evidence.json`, and sign it: what the owner of a key can forge."""
     rehash(pack)
     evidence = json.loads((pack / "data/evidence.json").read_text("utf-8"))
-    said = statement(pack, load_result(pack / "data/result"), summary_of(pack), evidence)
-    (pack / STATEMENT).write_bytes(envelope(said, private_key(key)))
+    said = in_toto_statement(pack, load_result(pack / "data/result"), packed_summary(pack), evidence)
+    (pack / STATEMENT).write_bytes(signed_envelope(said, private_key(key)))
     rehash(pack, payload=False)
 
 

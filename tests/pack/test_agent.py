@@ -91,7 +91,7 @@ def test_an_agent_signs_as_the_key_itself_does(packed: Packed, tmp_path: Path) -
 def test_a_public_key_in_pem_names_the_same_key(tmp_path: Path) -> None:
     add(tmp_path, "ours")
     key = signature.signing_key(tmp_path / "ours.pub.pem")
-    assert signature.is_signed_by(signature.envelope(b"{}", key), key.public_key())
+    assert signature.is_signed_by(signature.signed_envelope(b"{}", key), key.public_key())
 
 
 @pytest.mark.usefixtures("agent")

@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from drivelint import cli
 from drivelint.errors import UsageError
 from drivelint.pack import PackRequest, VerifyRequest, signature, verify, write_pack
-from drivelint.pack.finding_sql import literal
+from drivelint.pack.finding_sql import param_literal
 from tests.explain.checked import OVERTAKE, check
 from tests.pack.packed import make_key, make_pack, numbers_without_drivelint, statement_of
 
@@ -79,7 +79,7 @@ def test_a_number_is_written_with_its_type() -> None:
     for value in (0.1, 3.0, 1e-7, 1e300, -2.5, 7, True, "it's"):
         (found,) = (
             duckdb.connect()
-            .execute(f"SELECT typeof(v), v = ?, v FROM (SELECT {literal(value)} AS v)", [value])
+            .execute(f"SELECT typeof(v), v = ?, v FROM (SELECT {param_literal(value)} AS v)", [value])
             .fetchall()
         )
         assert found[1]
@@ -304,6 +304,6 @@ def test_keys_of_openssh_are_read(tmp_path: Path) -> None:
     (tmp_path / "id.pub").write_bytes(
         key.public_key().public_bytes(serialization.Encoding.OpenSSH, serialization.PublicFormat.OpenSSH)
     )
-    envelope = signature.envelope(b"{}", signature.private_key(tmp_path / "id"))
+    envelope = signature.signed_envelope(b"{}", signature.private_key(tmp_path / "id"))
     assert signature.is_signed_by(envelope, signature.public_key(tmp_path / "id.pub"))
     assert signature.is_signed_by(envelope, signature.public_key(public))

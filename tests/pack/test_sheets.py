@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.incident import IncidentRequest, write_incident
+from drivelint.incident import IncidentRequest, write_sheet
 from drivelint.pack import VerifyRequest, verify
 from tests.pack.packed import change_evidence, edit, make_pack, reseal
 
@@ -26,7 +26,7 @@ def result(packed: Packed) -> Path:
     # beside the other, so that it finds log, map and mapping
     folder = shutil.copytree(packed.result, packed.result.parent / "with_sheets")
     for name in ("no-collision", "safe-distance-ahead"):
-        (page,) = write_incident(IncidentRequest(name, folder))
+        (page,) = write_sheet(IncidentRequest(name, folder))
         page.with_suffix(".pdf").write_bytes(b"%PDF of " + page.stem.encode())
     edit(page, "Incident sheet", "Incident sheet without blame")
     (page.parent / "0000000000000000.html").write_text("of another run", encoding="utf-8")

@@ -109,7 +109,7 @@ def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, t
     found = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.authority.root))
     assert found.problems == []
     assert ", existed by 20" in found.sentence
-    statement, response = stamped.pack / "statement.dsse.json", stamped.pack / timestamp.FILE
+    statement, response = stamped.pack / "statement.dsse.json", stamped.pack / timestamp.TIMESTAMP_FILE
     openssl("ts", "-verify", "-data", statement, "-in", response, "-CAfile", stamped.authority.root)
     without = verify(VerifyRequest(stamped.pack, packed.public))
     assert without.problems == []
@@ -124,7 +124,7 @@ def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, t
         if not (stamped.bare / name).is_file()
         or (stamped.bare / name).read_bytes() != (stamped.pack / name).read_bytes()
     }
-    assert differing == {timestamp.FILE, "tagmanifest-sha256.txt"}
+    assert differing == {timestamp.TIMESTAMP_FILE, "tagmanifest-sha256.txt"}
 
 
 def test_another_authority_is_not_trusted(stamped: Stamped, packed: Packed) -> None:
@@ -141,14 +141,14 @@ def test_the_order_in_which_an_authority_sends_its_certificates_does_not_matter(
     for no, order in enumerate((roots, roots[::-1])):
         stamped.authority.send(*order)
         content = stamped.authority.stamp(statement, tmp_path / f"{no}.tsr").read_bytes()
-        looked = timestamp.look(content, statement.read_bytes(), stamped.authority.root)
+        looked = timestamp.check_response(content, statement.read_bytes(), stamped.authority.root)
         assert looked.problems == []
     stamped.authority.send(roots[0])
 
 
 def test_a_pack_without_a_stamp_where_one_is_asked_for(stamped: Stamped, packed: Packed) -> None:
     (found,) = verify(VerifyRequest(stamped.bare, packed.public, timestamp_root=stamped.authority.root)).problems
-    assert found == ("no time stamp", timestamp.FILE)
+    assert found == ("no time stamp", timestamp.TIMESTAMP_FILE)
 
 
 @pytest.mark.parametrize("roots", [True, False])
@@ -158,12 +158,12 @@ def test_a_stamp_of_something_else(digest: str, roots: bool, stamped: Stamped, p
     pack = tmp_path / "pack"
     shutil.copytree(stamped.bare, pack)
     data = packed.other_pack if digest == "sha256" else pack
-    stamped.authority.stamp(data / "statement.dsse.json", pack / timestamp.FILE, digest)
-    (pack / timestamp.FILE).with_suffix(".tsq").unlink()
+    stamped.authority.stamp(data / "statement.dsse.json", pack / timestamp.TIMESTAMP_FILE, digest)
+    (pack / timestamp.TIMESTAMP_FILE).with_suffix(".tsq").unlink()
     rehash(pack, payload=False)
     root = stamped.authority.root if roots else None
     found = verify(VerifyRequest(pack, packed.public, timestamp_root=root)).problems
-    assert found == [("time stamp of another statement", timestamp.FILE)]
+    assert found == [("time stamp of another statement", timestamp.TIMESTAMP_FILE)]
 
 
 def change_all(content: bytes, by: int = 13) -> list[bytes]:
@@ -179,14 +179,14 @@ def change_all(content: bytes, by: int = 13) -> list[bytes]:
 def test_no_changed_byte_of_a_stamp_gives_another_time(stamped: Stamped) -> None:
     """Most are refused; a certificate that is sent along and not needed is read by nobody. One that is cut or goes on is refused."""
     envelope = (stamped.pack / "statement.dsse.json").read_bytes()
-    content = (stamped.pack / timestamp.FILE).read_bytes()
-    right = timestamp.look(content, envelope, stamped.authority.root)
+    content = (stamped.pack / timestamp.TIMESTAMP_FILE).read_bytes()
+    right = timestamp.check_response(content, envelope, stamped.authority.root)
     assert right.problems == []
-    found = [timestamp.look(other, envelope, stamped.authority.root) for other in change_all(content)]
+    found = [timestamp.check_response(other, envelope, stamped.authority.root) for other in change_all(content)]
     assert {each.description for each in found if not each.problems} <= {right.description}
     assert sum(1 for each in found if each.problems) > len(found) / 2
     for other in (content[:-1], content[: len(content) // 2], b"", content + b"\0"):
-        assert timestamp.look(other, envelope, stamped.authority.root).problems != []
+        assert timestamp.check_response(other, envelope, stamped.authority.root).problems != []
 
 
 @pytest.mark.slow
@@ -214,7 +214,7 @@ def test_without_the_package_a_stamp_is_not_looked_at(
     """It never counts as verified."""
     monkeypatch.setitem(sys.modules, "rfc3161_client", None)
     pack = make_pack(packed.result, tmp_path / "pack", packed.key)
-    (pack / timestamp.FILE).write_bytes(b"whatever")
+    (pack / timestamp.TIMESTAMP_FILE).write_bytes(b"whatever")
     rehash(pack, payload=False)
     found = verify(VerifyRequest(pack, packed.public))
     assert "with a time stamp that was not examined" in found.sentence
@@ -222,12 +222,12 @@ def test_without_the_package_a_stamp_is_not_looked_at(
     with pytest.raises(UsageError, match="rfc3161-client"):
         verify(VerifyRequest(pack, packed.public, timestamp_root=packed.public))
     with pytest.raises(UsageError, match="rfc3161-client"):
-        timestamp.read(pack / timestamp.FILE, b"")
+        timestamp.read_response(pack / timestamp.TIMESTAMP_FILE, b"")
 
 
 @pytest.mark.slow
 def test_a_stamp_of_an_unsigned_pack_is_a_file_that_was_added(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack")
-    (pack / timestamp.FILE).write_bytes(b"whatever")
+    (pack / timestamp.TIMESTAMP_FILE).write_bytes(b"whatever")
     rehash(pack, payload=False)
-    assert verify(VerifyRequest(pack)).problems == [("file added", timestamp.FILE)]
+    assert verify(VerifyRequest(pack)).problems == [("file added", timestamp.TIMESTAMP_FILE)]

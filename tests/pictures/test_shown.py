@@ -106,9 +106,9 @@ def test_a_damaged_frame_is_told_and_the_others_are_shown(tmp_path: Path) -> Non
 
 @pytest.mark.ci
 def test_the_sheet_has_a_page_of_them(bag: Path, out: Path) -> None:
-    from drivelint.incident import IncidentRequest, write_incident
+    from drivelint.incident import IncidentRequest, write_sheet
 
-    (sheet,) = write_incident(IncidentRequest("ukhc.no-collision", out))
+    (sheet,) = write_sheet(IncidentRequest("ukhc.no-collision", out))
     page = sheet.read_text(encoding="utf-8")
     assert page.count("data:image/jpeg;base64,") == load_result(out).pictures.num_rows
     assert page.count("of 3</span>") == 3

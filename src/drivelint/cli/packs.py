@@ -68,9 +68,9 @@ def pack(
     computes its margin in any DuckDB; and an in-toto statement of the logs, the map, the rules and the results. To find these rows,
     the logs with findings are judged again. The same command gives the same bytes.
     """
-    from drivelint.pack import MOST_FINDINGS, PackRequest
+    from drivelint.pack import DEFAULT_PACKED_FINDINGS, PackRequest
 
-    most = MOST_FINDINGS if findings is None else option_values.parse_number_or_all("--findings", findings)
+    most = DEFAULT_PACKED_FINDINGS if findings is None else option_values.parse_number_or_all("--findings", findings)
     request = PackRequest(
         folder,
         out,
@@ -89,7 +89,7 @@ def pack(
 def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) -> None:
     """Write a pack and print a summary of its content; with `on_stderr` on stderr."""
     from drivelint.pack import write_pack
-    from drivelint.pack.contents import told_findings
+    from drivelint.pack.contents import findings_with_sql_text
     from drivelint.result.load import load_result
 
     told = run_interruptible(lambda: write_pack(request))
@@ -100,7 +100,7 @@ def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) ->
             f"{n} of {plural(len(findings), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
         )
     else:
-        counted = told_findings(load_result(request.folder).findings.to_pylist(), findings)
+        counted = findings_with_sql_text(load_result(request.folder).findings.to_pylist(), findings)
     signed = "signed" if request.key else "not signed"
     less = f"; {plural(left, 'less severe finding')} left out (drivelint pack --findings all)" if left else ""
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
@@ -152,7 +152,7 @@ def verify(
     """
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified
-    from drivelint.pack.bag import explanation
+    from drivelint.pack.bag import explanation_text
 
     request = VerifyRequest(
         folder, key, tuple(traces or ()), map_, timestamp_root,
@@ -162,7 +162,7 @@ def verify(
     for note in found.notes:
         typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
     for problem in found.problems:
-        typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}{explanation(problem)}")
+        typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}{explanation_text(problem)}")
     if not found.problems:
         typer.echo(terminal_safe(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))

@@ -20,7 +20,7 @@ from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive, with_ego
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
-from drivelint.incident.finding import contacts, named_finding, near_misses, with_closing_speed
+from drivelint.incident.finding import contact_findings, named_finding, near_miss_with_closing_speed, near_misses
 from drivelint.incident.judge import EgoRows, Judge
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
@@ -40,7 +40,7 @@ FOLDER: Final = "incidents"
 """The subfolder of the result folder that contains the sheets; each file has the finding's id as its name."""
 _HERE: Final = Path(__file__).parent
 _REPORT_TEMPLATES: Final = Path(report_page.__file__).parent / "templates"
-_NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
+_NON_VEHICLE_CLASSES: Final = frozenset({"pedestrian", "animal", "object"})
 
 
 @dataclass(frozen=True)
@@ -55,22 +55,22 @@ class IncidentRequest:
     memory: int | None = DEFAULT_MEMORY
 
 
-def write_incident(request: IncidentRequest) -> list[Path]:
+def write_sheet(request: IncidentRequest) -> list[Path]:
     """Write the sheet of a finding or near miss into the result folder and return the paths of its files.
 
     Errors: `UsageError` if the finding, log or map does not exist, or if no installed browser can print a PDF.
     """
     browser = pdf.find_browser() if request.pdf else None
-    case = open_case(request)
-    name, page = case.finding.row["finding_id"], render(case)
+    case = judge_parties_again(request)
+    name, page = case.finding.row["finding_id"], sheet_html(case)
     contents = {f"{name}.html": page}
     if browser is not None:
-        contents[f"{name}.pdf"] = pdf.print_page(page, browser)
+        contents[f"{name}.pdf"] = pdf.pdf_of_page(page, browser)
     publish(request.folder / FOLDER, contents, {})
     return [request.folder / FOLDER / name for name in contents]
 
 
-def other_drives(request: IncidentRequest) -> list[str]:
+def other_matching_drives(request: IncidentRequest) -> list[str]:
     """Return the other drives with findings that match the name; they exist only if the name is a rule, or `contact`, without a drive.
 
     If no drive has such a finding, return the other drives with near misses.
@@ -82,25 +82,25 @@ def other_drives(request: IncidentRequest) -> list[str]:
         return []
     every = near_misses(result) if named.is_near_miss else result.findings.select(["rule_id", "drive_id"]).to_pylist()
     same = (
-        contacts(result)
+        contact_findings(result)
         if request.name == CONTACT_TAG
         else [each for each in every if each["rule_id"] == row["rule_id"]]
     )
     return sorted({each["drive_id"] for each in same} - {row["drive_id"]})
 
 
-def sheet_ids(result: Result) -> set[str]:
+def possible_sheet_ids(result: Result) -> set[str]:
     """Return the ids of all findings and near misses of a result; the file of a sheet has its id as name."""
     return {*result.findings["finding_id"].to_pylist(), *(row["finding_id"] for row in near_misses(result))}
 
 
-def render(case: Case) -> bytes:
+def sheet_html(case: Case) -> bytes:
     """Return the sheet as one HTML page that opens offline; the same case gives the same bytes."""
-    text = _environment().get_template("sheet.html.j2").render(sheet.content(case))
+    text = _template_environment().get_template("sheet.html.j2").render(sheet.template_values(case))
     return text.encode("utf-8", "replace")
 
 
-def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
+def judge_parties_again(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
     """Find the finding and judge both parties again; for another party that was an ego of the run, the run's result is used.
 
     `run_options`: the run's options with the current paths of its files; None: the paths are those of `run.json`.
@@ -116,19 +116,25 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
         run_options,
         finding.row["drive_id"],
         ego,
-        trace=_log(request, run_options, finding),
+        trace=_present_log_path(request, run_options, finding),
         map_=request.map,
         map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
     if finding.is_near_miss:
-        finding = with_closing_speed(finding, again.steps)
+        finding = near_miss_with_closing_speed(finding, again.steps)
     return Case(
-        result, run_options, finding, drive, again, _other_party(request, run_options, result, finding, judge), source
+        result,
+        run_options,
+        finding,
+        drive,
+        again,
+        _other_party_rows_or_reason(request, run_options, result, finding, judge),
+        source,
     )
 
 
-def _other_party(
+def _other_party_rows_or_reason(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> EgoRows | str | None:
     """Return the result for the other party as ego, or a sentence why it was not judged; None if there is no other party."""
@@ -144,17 +150,22 @@ def _other_party(
     # the option --ego-size is about the ego of the run: with this option, read the log with that ego
     read_as = other if run_options.ego_size is None else finding.row["ego_id"]
     drive, _ = open_drive(
-        request.folder, run_options, drive_id, read_as, trace=_log(request, run_options, finding), map_=request.map
+        request.folder,
+        run_options,
+        drive_id,
+        read_as,
+        trace=_present_log_path(request, run_options, finding),
+        map_=request.map,
     )
     drive = with_ego(drive, other)
     kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
-    if kinds.get(other) in _NO_VEHICLES:
+    if kinds.get(other) in _NON_VEHICLE_CLASSES:
         return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."
     examined = any(row["n_copies"] is not None for row in result.findings.to_pylist())
     return judge.judge(drive, other, finding.row["ego_id"], MeasurementErrors() if examined else None)
 
 
-def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
+def _present_log_path(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
     """Return the log's path, from which the log is read even if a database was kept; None if there is no log at that path."""
     if request.trace is not None:
         return request.trace
@@ -163,7 +174,7 @@ def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFindin
 
 
 @cache
-def _environment() -> Environment:
+def _template_environment() -> Environment:
     environment = Environment(
         finalize=escape_for_page,
         bytecode_cache=CompiledTemplates("incident"),
@@ -192,7 +203,7 @@ def _environment() -> Environment:
         duckdb_version=duckdb.__version__,
         anchor=anchor,
         number=number,
-        figure=sheet.figure,
+        figure=sheet.number_or_dash,
     )
     environment.filters["measure"] = measure
     return environment

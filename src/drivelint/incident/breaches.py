@@ -8,7 +8,15 @@ from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue.header import EXCUSES_TAG
-from drivelint.incident.words import SENSE, amount, how_sure, measured_text, minus, profile, required
+from drivelint.incident.words import (
+    SENSE_WORDS,
+    amount_text,
+    certainty_text,
+    measured_and_required_text,
+    profile_text,
+    required_value_text,
+    text_with_minus_signs,
+)
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
 from drivelint.result.counts import one_finding_per_event
@@ -19,104 +27,106 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-ADVICE: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
+ADVICE_VERBS: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
 """The words with which the advice at the end of a reason begins."""
-_ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
-_MOST_STRETCHES: Final = 2
-LOWER_BOUND: Final = "lower_bound"
+_ADVICE_PATTERN: Final = re.compile(rf": (?:{'|'.join(ADVICE_VERBS)}) .*$")
+_MOST_LISTED_JUDGED_TIMES: Final = 2
+LOWER_BOUND_CAUSE: Final = "lower_bound"
 """The cause code of a verdict whose measured value is a lower bound, because the data end."""
 
 
-def quoted(rule: Row) -> str:
+def quoted_title(rule: Row) -> str:
     """Return the title of a rule in quotation marks, because it states a demand, not a fact."""
     return f"\u201c{rule['title']}\u201d"
 
 
-def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
+def broken_rule_line(rule: Row, rows: Sequence[Row], drive_start_ns: int) -> str:
     """Return the line of a broken rule: its worst finding (of each profile, if several), with number and certainty of the findings."""
     ordered = sorted(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     row = ordered[0]
     per_profile = list({each["profile"]: each for each in reversed(ordered)}.values())
     what = (
-        _measured_by_profile(rule, per_profile)
-        or measured_text(row, rule)
+        _values_by_profile_text(rule, per_profile)
+        or measured_and_required_text(row, rule)
         or shorten(row["reason"], 120, placeholder=" ...")
     )
-    whom = profile(row["profile"]) if len(per_profile) == 1 else ""
-    about = f"{short_clause(rule['clause'])}, {rule['severity']}"
-    return f"{quoted(rule)}{whom} ({about}): {_when(row, rule, start_ns)}, {what}{_certainties(rows)}"
+    whom = profile_text(row["profile"]) if len(per_profile) == 1 else ""
+    about = f"{clause_number(rule['clause'])}, {rule['severity']}"
+    return f"{quoted_title(rule)}{whom} ({about}): {_finding_time_text(row, rule, drive_start_ns)}, {what}{_certainties_text(rows)}"
 
 
-def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
-    """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `judged_span_ns`.
+def kept_rule_line(rule: Row, rows: Sequence[Row], span_ns: tuple[int, int], drive_start_ns: int) -> str:
+    """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `span_ns`.
 
     The title replaces the value if the rule measures nothing, or may excuse a breach, because the value does not show the excuse.
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
-    said, about = quoted(rule), [_stretches(rows, span, start_ns)]
+    said, about = quoted_title(rule), [_judged_times_text(rows, span_ns, drive_start_ns)]
     if EXCUSES_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
-        least = "at least " if row["cause_code"] == LOWER_BOUND else ""
-        said = minus(f"{rule['observes']}{whom} {least}{amount(row['observed'], row['unit'])}")
-        about.insert(0, f"{SENSE.get(rule['sense'], '')}{required(row, rule)}")
+        least = "at least " if row["cause_code"] == LOWER_BOUND_CAUSE else ""
+        said = text_with_minus_signs(f"{rule['observes']}{whom} {least}{amount_text(row['observed'], row['unit'])}")
+        about.insert(0, f"{SENSE_WORDS.get(rule['sense'], '')}{required_value_text(row, rule)}")
     if any(each["near_miss"] for each in rows):
         about.append("near miss")
     told = "; ".join(each for each in about if each)
     return f"{said} ({told})" if told else said
 
 
-def without_advice(reason: str) -> str:
+def reason_without_advice(reason: str) -> str:
     """Return a reason without its advice, which is useless for a finished recording."""
-    return _ADVICE.sub("", reason).removesuffix(".")
+    return _ADVICE_PATTERN.sub("", reason).removesuffix(".")
 
 
-def short_clause(clause: str) -> str:
+def clause_number(clause: str) -> str:
     """Return the number of a clause without its text."""
     return clause.partition(":")[0].partition(" (")[0]
 
 
-def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
+def _values_by_profile_text(rule: Row, rows: Sequence[Row]) -> str:
     """Return measured and required values of each profile, the greatest margin first; '' for one profile or without values."""
     if len(rows) < 2 or any(row["observed"] is None or row["required"] is None for row in rows):
         return ""
     ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
-    found = {amount(row["observed"], row["unit"]) for row in rows}
+    found = {amount_text(row["observed"], row["unit"]) for row in rows}
     if len(found) > 1:
-        return "; ".join(f"{measured_text(row, rule)}{profile(row['profile'])}" for row in ordered)
-    needs = ", ".join(f"{amount(row['required'], row['unit'])}{profile(row['profile'])}" for row in ordered)
-    return minus(f"{found.pop()}, must be {SENSE.get(rule['sense'], '')}{needs}")
+        return "; ".join(f"{measured_and_required_text(row, rule)}{profile_text(row['profile'])}" for row in ordered)
+    needs = ", ".join(f"{amount_text(row['required'], row['unit'])}{profile_text(row['profile'])}" for row in ordered)
+    return text_with_minus_signs(f"{found.pop()}, must be {SENSE_WORDS.get(rule['sense'], '')}{needs}")
 
 
-def _when(row: Row, rule: Row, start_ns: int) -> str:
-    worst = seconds(row["t_worst_ns"], start_ns)
+def _finding_time_text(row: Row, rule: Row, drive_start_ns: int) -> str:
+    worst = seconds(row["t_worst_ns"], drive_start_ns)
     if rule["kind"] == "execution":
         return f"for the manoeuvre at {worst}"
     if row["t_start_ns"] in {None, row["t_end_ns"]}:
         return f"at {worst}"
-    start, end = (seconds(row[key], start_ns) for key in ("t_start_ns", "t_end_ns"))
+    start, end = (seconds(row[key], drive_start_ns) for key in ("t_start_ns", "t_end_ns"))
     return f"from {start} to {end}, worst at {worst}"
 
 
-def _certainties(rows: Sequence[Row]) -> str:
+def _certainties_text(rows: Sequence[Row]) -> str:
     """Return in words how sure findings are, one per event; '' for verdicts without findings."""
     found = one_finding_per_event(row for row in rows if "finding_id" in row)
     if not found:
         return ""
     if len(found) == 1:
-        return f"; {how_sure(found[0]) or 'certainty not examined'}"
+        return f"; {certainty_text(found[0]) or 'certainty not examined'}"
     n = Counter(certainty(row) or "not examined" for row in found)
     return f" ({plural(len(found), 'finding')}: {', '.join(f'{n[word]} {word}' for word in sorted(n, reverse=True))})"
 
 
-def _stretches(rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
+def _judged_times_text(rows: Sequence[Row], span_ns: tuple[int, int], drive_start_ns: int) -> str:
     """Return in words when a rule was judged; '' if it was judged in all of the span."""
     found = sorted({(row["t_start_ns"], row["t_end_ns"]) for row in rows if row["t_start_ns"] is not None})
-    if not found or any(start <= span[0] and end >= span[1] for start, end in found):
+    if not found or any(start <= span_ns[0] and end >= span_ns[1] for start, end in found):
         return ""
-    if len(found) > _MOST_STRETCHES:
-        first, last = seconds(found[0][0], start_ns), seconds(max(end for _, end in found), start_ns)
+    if len(found) > _MOST_LISTED_JUDGED_TIMES:
+        first, last = seconds(found[0][0], drive_start_ns), seconds(max(end for _, end in found), drive_start_ns)
         return f"{len(found)} times, {first[:-2]} to {last}"
     return ", ".join(
-        seconds(start, start_ns) if start == end else f"{seconds(start, start_ns)[:-2]} to {seconds(end, start_ns)}"
+        seconds(start, drive_start_ns)
+        if start == end
+        else f"{seconds(start, drive_start_ns)[:-2]} to {seconds(end, drive_start_ns)}"
         for start, end in found
     )

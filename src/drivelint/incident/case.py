@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-LETTERS: Final = ("A", "B")
+PARTY_LETTERS: Final = ("A", "B")
 """The names of the parties on the sheet."""
 
 

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def commands(
-    run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str], named_ids: Collection[str] = ()
+def reproducing_commands(
+    run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str], named_rule_ids: Collection[str] = ()
 ) -> list[str]:
     """Return two commands: the check of the finding's log by the rules of the run, and the report. Files are named without folders.
 
-    `rule_ids`: the rules of the run; `named_ids`: those that the user selected by their id.
+    `rule_ids`: the rules of the run; `named_rule_ids`: those that the user selected by their id.
     """
     row, drive = finding.row, finding.drive
     words = ["drivelint", "check", drive["file_name"]]
@@ -32,17 +32,22 @@ def commands(
         words += ["--map", run_options.map.name]
     elif run_options.map_dir is not None:
         words += ["--map", drive["map_name"] or "MAP"]
-    words += _options(run_options)
+    words += _log_and_map_options(run_options)
     if row["ego_id"]:
         words += ["--ego", row["ego_id"] if len(drive["exposure"]) == 1 else "all"]
-    words += of_rules(run_options, rule_ids, named_ids)
+    words += rule_selection_options(run_options, rule_ids, named_rule_ids)
     name = row["finding_id"]
-    return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
+    return [
+        _shell_command([*words, "--out", "again"]),
+        _shell_command(["drivelint", "report", "again", "--incident", name]),
+    ]
 
 
-def of_rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collection[str] = ()) -> list[str]:
+def rule_selection_options(
+    run_options: RunRequest, rule_ids: Sequence[str], named_rule_ids: Collection[str] = ()
+) -> list[str]:
     """Return the options that select the rules, profiles and parameters of a run. Folders are given without their parent folders."""
-    words = _rules(run_options, rule_ids, named_ids)
+    words = _shortest_rules_options(run_options, rule_ids, named_rule_ids)
     for profile in run_options.profiles if tuple(run_options.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
     for setting in run_options.params:
@@ -52,14 +57,16 @@ def of_rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collec
     return words
 
 
-def _rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collection[str]) -> list[str]:
+def _shortest_rules_options(
+    run_options: RunRequest, rule_ids: Sequence[str], named_rule_ids: Collection[str]
+) -> list[str]:
     """Return the shortest options that select these rules, and by their ids the named rules whose signals few logs have."""
     known, wanted = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
     rules = [known[rule_id] for rule_id in sorted(wanted & known.keys())]
     # if its id does not select it, such a rule does not apply instead of being unknown
     of_few_logs = [rule.id for rule in rules if SIGNALS_OF_FEW_LOGS & set(rule.needed_signals)]
-    named = [rule_id for rule_id in of_few_logs if rule_id in named_ids]
-    by_ids = _selectors(sorted(wanted))
+    named = [rule_id for rule_id in of_few_logs if rule_id in named_rule_ids]
+    by_ids = _rules_option_words(sorted(wanted))
     candidates = [by_ids] if named == of_few_logs else []
     packs = sorted({rule.pack for rule in rules})
     stable = sorted({rule.pack for rule in rules if rule.status == "stable"})
@@ -69,20 +76,20 @@ def _rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collecti
         selected = {rule.id for rule in catalogue.select_rules(known, chosen, ())}
         if wanted <= selected:
             left_out = (word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))
-            candidates.append([*_selectors(chosen), *left_out])
+            candidates.append([*_rules_option_words(chosen), *left_out])
     return min(candidates or [by_ids], key=len)
 
 
-def named_by_user(rules_of_run: pa.Table) -> list[str]:
+def rule_ids_named_by_user(rules_of_run: pa.Table) -> list[str]:
     """Return the ids of the rules that the user selected by their ids. `rules_of_run`: rows of the table `rule`."""
     return [row["rule_id"] for row in rules_of_run.to_pylist() if row["is_named"]]
 
 
-def _selectors(names: Sequence[str]) -> list[str]:
+def _rules_option_words(names: Sequence[str]) -> list[str]:
     return [word for name in names for word in ("--rules", name)]
 
 
-def _options(run_options: RunRequest) -> list[str]:
+def _log_and_map_options(run_options: RunRequest) -> list[str]:
     """Return the options about the log and its map that differ from their defaults."""
     words: list[str] = []
     if run_options.mapping is not None:
@@ -108,5 +115,5 @@ def _options(run_options: RunRequest) -> list[str]:
     return words
 
 
-def _line(words: list[str]) -> str:
+def _shell_command(words: list[str]) -> str:
     return " ".join(shlex.quote(word) for word in words)

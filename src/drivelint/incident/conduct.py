@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.header import CONTACT_TAG, EXCUSES_TAG
-from drivelint.incident.breaches import broken_line, kept_line, quoted, without_advice
-from drivelint.incident.fitting import Reason
+from drivelint.incident.breaches import broken_rule_line, kept_rule_line, quoted_title, reason_without_advice
+from drivelint.incident.fitting import UndecidedReason
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
 from drivelint.result.counts import SEVERITIES, group_rows
 
@@ -16,28 +16,30 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-_QUOTED: Final = re.compile("(\u201c[^\u201d]*\u201d)")
-_EGO: Final = re.compile(r"\b[Tt]he ego\b")
-_UNDECIDED: Final = frozenset({"unknown", "error"})
+_QUOTATION_PATTERN: Final = re.compile("(\u201c[^\u201d]*\u201d)")
+_EGO_PATTERN: Final = re.compile(r"\b[Tt]he ego\b")
+_UNDECIDED_VERDICTS: Final = frozenset({"unknown", "error"})
 
 
-def conduct(
+def conduct_texts_and_counts(
     verdicts: Iterable[Row],
     findings: Iterable[Row],
     rules: Mapping[str, Row],
-    span: tuple[int, int],
-    start_ns: int,
+    span_ns: tuple[int, int],
+    drive_start_ns: int,
     *,
-    touched: bool = False,
+    is_about_contact: bool = False,
 ) -> dict[str, Any]:
     """Return the conduct of one ego in a span of the drive, as lists of texts and numbers of rules.
 
     A rule counts once, by its worst verdict in the span: broken, undecided (or in error), kept, or never applicable. A verdict without
     a time is about the whole drive. `elsewhere`: rules broken only outside the span. `excused`: kept rules that may excuse what their
     titles forbid. `beside`: rules about contacts that found none although another rule did; these rules do not count as kept.
-    `only_hit`: only rules about contacts were broken. `touched`: the sheet is about a contact.
+    `only_hit`: only rules about contacts were broken. `is_about_contact`: the sheet is about a contact.
     """
-    told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
+    told = {
+        name: [row for row in rows if _overlaps_span(row, span_ns)] for name, rows in (("v", verdicts), ("f", findings))
+    }
     by_rule = group_rows(told["v"], lambda row: row["rule_id"])
     found = group_rows(told["f"], lambda row: row["rule_id"])
     failures = {rule: [row for row in rows if row["verdict"] == "fail"] for rule, rows in by_rule.items()}
@@ -46,27 +48,31 @@ def conduct(
     elsewhere = {rule for rule, rows in failures.items() if rows} - failed - found.keys()
     broken = sorted(found.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule))
     rest = {rule: rows for rule, rows in sorted(by_rule.items()) if rule not in set(broken)}
-    undecided = {rule: rows for rule, rows in rest.items() if any(row["verdict"] in _UNDECIDED for row in rows)}
+    undecided = {
+        rule: rows for rule, rows in rest.items() if any(row["verdict"] in _UNDECIDED_VERDICTS for row in rows)
+    }
     kept = [
         rule
         for rule, rows in rest.items()
         if rule not in undecided and rule not in elsewhere and any(row["verdict"] == "pass" for row in rows)
     ]
-    touched |= any(CONTACT_TAG in rules[rule]["tags"] for rule in broken)
-    beside = [rule for rule in kept if touched and CONTACT_TAG in rules[rule]["tags"]]
+    is_about_contact |= any(CONTACT_TAG in rules[rule]["tags"] for rule in broken)
+    beside = [rule for rule in kept if is_about_contact and CONTACT_TAG in rules[rule]["tags"]]
     kept = [rule for rule in kept if rule not in beside]
     passed = {rule: [row for row in rest[rule] if row["verdict"] == "pass"] for rule in (*kept, *beside)}
-    lines = {rule: kept_line(rules[rule], rows, span, start_ns) for rule, rows in passed.items()}
+    lines = {rule: kept_rule_line(rules[rule], rows, span_ns, drive_start_ns) for rule, rows in passed.items()}
     parts = {
         "broken": [
-            broken_line(
-                rules[rule], found.get(rule) or [row for row in by_rule[rule] if row["verdict"] == "fail"], start_ns
+            broken_rule_line(
+                rules[rule],
+                found.get(rule) or [row for row in by_rule[rule] if row["verdict"] == "fail"],
+                drive_start_ns,
             )
             for rule in broken
         ],
         "kept": [lines[rule] for rule in kept if EXCUSES_TAG not in rules[rule]["tags"]],
         "excused": [lines[rule] for rule in kept if EXCUSES_TAG in rules[rule]["tags"]],
-        "reasons": _reasons(undecided, rules),
+        "reasons": _undecided_reasons(undecided, rules),
     }
     return {
         "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
@@ -78,36 +84,42 @@ def conduct(
     }
 
 
-def name_party(conduct_lists: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return the texts about a party with `name` instead of "the ego"; titles in quotation marks are not changed."""
+def conduct_with_party_name(conduct_lists: Mapping[str, Any], party_name: str) -> dict[str, Any]:
+    """Return the texts about a party with `party_name` instead of "the ego"; titles in quotation marks are not changed."""
     named_lists = dict(conduct_lists)
     for part in ("broken", "kept", "excused", "beside"):
         if part in conduct_lists:
-            named_lists[part] = [_with_party_name(line, name) for line in conduct_lists[part]]
+            named_lists[part] = [_text_with_party_name(line, party_name) for line in conduct_lists[part]]
     if "reasons" in conduct_lists:
         named_lists["reasons"] = [
-            reason._replace(why=_with_party_name(reason.why, name)) for reason in conduct_lists["reasons"]
+            reason._replace(why=_text_with_party_name(reason.why, party_name)) for reason in conduct_lists["reasons"]
         ]
     return named_lists
 
 
-def _with_party_name(text: str, name: str) -> str:
-    return "".join(part if part.startswith("\u201c") else _EGO.sub(name, part) for part in _QUOTED.split(text))
+def _text_with_party_name(text: str, party_name: str) -> str:
+    return "".join(
+        part if part.startswith("\u201c") else _EGO_PATTERN.sub(party_name, part)
+        for part in _QUOTATION_PATTERN.split(text)
+    )
 
 
-def _within(row: Row, span: tuple[int, int]) -> bool:
+def _overlaps_span(row: Row, span_ns: tuple[int, int]) -> bool:
     start, end = row["t_start_ns"], row["t_end_ns"]
-    return start is None or end is None or (start <= span[1] and end >= span[0])
+    return start is None or end is None or (start <= span_ns[1] and end >= span_ns[0])
 
 
-def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
+def _undecided_reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[UndecidedReason]:
     """Return the reasons why rules are undecided: reasons of rules about contacts first, then the most frequent reasons."""
-    unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
+    unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED_VERDICTS]
     of_rules: dict[str, set[str]] = {}
     for rows in group_rows(unknown, lambda row: verdict_reason(row).kind).values():
         given = (verdict_reason(row) for row in rows)
-        why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
+        why = summarise_reasons(reason._replace(text=reason_without_advice(reason.text)) for reason in given)
         of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # reasons may differ only in advice
-    told = [Reason(why, tuple(quoted(rules[rule]) for rule in sorted(found))) for why, found in of_rules.items()]
-    contacts = {quoted(rule) for rule in rules.values() if CONTACT_TAG in rule["tags"]}
+    told = [
+        UndecidedReason(why, tuple(quoted_title(rules[rule]) for rule in sorted(found)))
+        for why, found in of_rules.items()
+    ]
+    contacts = {quoted_title(rule) for rule in rules.values() if CONTACT_TAG in rule["tags"]}
     return sorted(told, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))

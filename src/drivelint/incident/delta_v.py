@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.incident.words import minus, speed
+from drivelint.incident.words import speed_text, text_with_minus_signs
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.incident.motion import Motion
 
-WINDOW_S: Final = 0.3
+IMPACT_WINDOW_S: Final = 0.3
 """The time after the beginning of an impact in which crash recorders record the greatest change of velocity (49 CFR 563.7)."""
 _LEAST_TURN_DEGREES: Final = 5.0
-_LEAST_SPEED_MPS: Final = 0.5
+_LEAST_MEANINGFUL_SPEED_MPS: Final = 0.5
 """The direction of a smaller velocity, or of a smaller change of velocity, is not meaningful."""
 _MOST_STEPS_BETWEEN_SAMPLES: Final = 2.5
 """If samples are farther apart than this many usual steps, there is a gap, as in the rules (`max_gap`)."""
@@ -33,47 +33,53 @@ class DeltaV(NamedTuple):
     is_least: bool
 
 
-def delta_v(motion: Motion, party: int, before: int) -> DeltaV | None:
-    """Return the greatest change of a party's velocity vector since the step `before`, up to 0.3 s after the moment.
+def greatest_delta_v(motion: Motion, party: int, step_before: int) -> DeltaV | None:
+    """Return the greatest change of a party's velocity vector since the step `step_before`, up to 0.3 s after the moment.
 
-    The step after `before` counts even if it is later than that. None: a velocity in that time is not known or not recorded.
+    The step after `step_before` counts even if it is later than that. None: a velocity in that time is not known or not recorded.
     """
     t, v = motion.t, motion.velocity[party]
-    window = np.flatnonzero((t <= WINDOW_S + 1e-9) & (np.arange(len(t)) > before))
-    window = window if window.size else np.arange(before + 1, min(before + 2, len(t)))
-    change = np.hypot(*(v[:, window] - v[:, [before]]))
-    steps = np.diff(t[before : before + 1 + window.size])
+    window = np.flatnonzero((t <= IMPACT_WINDOW_S + 1e-9) & (np.arange(len(t)) > step_before))
+    window = window if window.size else np.arange(step_before + 1, min(step_before + 2, len(t)))
+    change = np.hypot(*(v[:, window] - v[:, [step_before]]))
+    steps = np.diff(t[step_before : step_before + 1 + window.size])
     if not window.size or np.isnan(change).any() or (steps > _MOST_STEPS_BETWEEN_SAMPLES * motion.step_s + 1e-9).any():
         return None
     i = int(change.argmax())
-    return DeltaV(float(change[i]), float(t[window[i]]), bool(t[-1] + motion.step_s <= WINDOW_S + 1e-9))
+    return DeltaV(float(change[i]), float(t[window[i]]), bool(t[-1] + motion.step_s <= IMPACT_WINDOW_S + 1e-9))
 
 
-def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, actor_id: str) -> str:
+def delta_v_text(motion: Motion, party: int, step_before: int | None, trace: Trace, actor_id: str) -> str:
     """Return the change of velocity in a contact with its interval in words, or why it is not known; '' if there is no contact."""
-    if before is None:
+    if step_before is None:
         return ""
     rows = trace.tables["quality"].to_pylist()
     checks = {row["check_id"] for row in rows if row["actor_id"] in {None, actor_id}}
     if "velocity_filtered" in checks:
         return "not known: the log has only a mean of its velocity, which hides an impact"
-    found = delta_v(motion, party, before)
+    found = greatest_delta_v(motion, party, step_before)
     if found is None:
-        return f"not known: its velocity is missing in part, from {_at(motion.t[before])} to {_at(WINDOW_S)}"
+        return (
+            f"not known: its velocity is missing in part, from {_signed_time_text(motion.t[step_before])} "
+            f"to {_signed_time_text(IMPACT_WINDOW_S)}"
+        )
     least = "at least " if found.is_least else ""
     derived = "; velocities computed from positions" if "velocity_derived" in checks else ""
-    turned = _turned(motion, party, before, found)
-    return f"{least}{speed(found.mps)}, from {_at(motion.t[before])} to {_at(found.at_s)}{turned}{derived}"
+    turned = _speeds_and_course_text(motion, party, step_before, found)
+    return (
+        f"{least}{speed_text(found.mps)}, from {_signed_time_text(motion.t[step_before])} "
+        f"to {_signed_time_text(found.at_s)}{turned}{derived}"
+    )
 
 
-def _turned(motion: Motion, party: int, before: int, velocity_change: DeltaV) -> str:
+def _speeds_and_course_text(motion: Motion, party: int, step_before: int, velocity_change: DeltaV) -> str:
     """Return speeds and change of direction in words; '' if the direction did not change.
 
     The text mentions steering if direction changed more than speed.
     """
-    v = motion.velocity[party][:, [before, int(np.abs(motion.t - velocity_change.at_s).argmin())]]
+    v = motion.velocity[party][:, [step_before, int(np.abs(motion.t - velocity_change.at_s).argmin())]]
     first, last = np.hypot(*v).tolist()
-    if velocity_change.mps < _LEAST_SPEED_MPS or min(first, last) < _LEAST_SPEED_MPS:
+    if velocity_change.mps < _LEAST_MEANINGFUL_SPEED_MPS or min(first, last) < _LEAST_MEANINGFUL_SPEED_MPS:
         return ""
     angle = math.degrees(math.acos(float(np.clip(v[:, 0] @ v[:, 1] / (first * last), -1.0, 1.0))))
     if angle < _LEAST_TURN_DEGREES:
@@ -82,5 +88,5 @@ def _turned(motion: Motion, party: int, before: int, velocity_change: DeltaV) ->
     return f": {first:.1f} to {last:.1f} m/s, direction changed by {angle:.0f}\u00b0{steering}"
 
 
-def _at(s: float) -> str:
-    return minus(f"{s:+.2f} s") if abs(s) >= 5e-3 else "0 s"
+def _signed_time_text(s: float) -> str:
+    return text_with_minus_signs(f"{s:+.2f} s") if abs(s) >= 5e-3 else "0 s"

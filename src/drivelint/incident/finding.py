@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_NEAR_MISS_ID: Final = "near-miss-"
+_NEAR_MISS_ID_PREFIX: Final = "near-miss-"
 """The beginning of the id of a near miss; the ids of findings are hexadecimal numbers."""
-_SAME: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
+_VERDICT_KEY_COLUMNS: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
 
 
 @dataclass(frozen=True)
@@ -71,20 +71,20 @@ def named_finding(result: Result, name: str, *, with_near_misses: bool = False) 
     drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     word, _, drive_id = name.partition("@")
-    is_near_miss = with_near_misses and name.startswith(_NEAR_MISS_ID)
+    is_near_miss = with_near_misses and name.startswith(_NEAR_MISS_ID_PREFIX)
     if word == CONTACT_TAG:
-        found = [row for row in contacts(result) if row["drive_id"].startswith(drive_id)]
+        found = [row for row in contact_findings(result) if row["drive_id"].startswith(drive_id)]
         if not found:
-            raise UsageError(f"--incident {name}: {_without_contact(result, drive_id)}")
+            raise UsageError(f"--incident {name}: {_no_contact_message(result, drive_id)}")
         row = found[0]
     elif is_near_miss:
         row = _near_miss_with_id(result, name)
     else:
         target = find_verdict(result, name, VerdictFilter())
         may_be_near = with_near_misses and target.finding is None and target.verdict["verdict"] != "fail"
-        near = _nearest_miss(result, target.verdict, of_drive=bool(drive_id)) if may_be_near else None
+        near = _nearest_miss_of_rule(result, target.verdict, is_same_drive=bool(drive_id)) if may_be_near else None
         is_near_miss = near is not None
-        row = near or target.finding or _worst_of(target.verdict, result)
+        row = near or target.finding or _worst_finding_of_verdict(target.verdict, result)
     return NamedFinding(row, drives[row["drive_id"]], rules[row["rule_id"]], is_near_miss)
 
 
@@ -104,7 +104,7 @@ def near_misses(result: Result) -> list[Row]:
     )
 
 
-def with_closing_speed(finding: NamedFinding, steps: pa.Table) -> NamedFinding:
+def near_miss_with_closing_speed(finding: NamedFinding, steps: pa.Table) -> NamedFinding:
     """Return a near miss with the closing speed at its moment. `steps`: rows of `queries/incident/step.sql`."""
     motion = Motion.of_steps(steps, finding.moment_ns)
     at = motion.at(0.0)
@@ -114,39 +114,39 @@ def with_closing_speed(finding: NamedFinding, steps: pa.Table) -> NamedFinding:
 
 def _near_miss_id(row: Row, content_sha256: str) -> str:
     parts = [content_sha256, *(row[name] for name in ("ego_id", "rule_id", "profile", "object_id", "occurrence"))]
-    return f"{_NEAR_MISS_ID}{hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]}"
+    return f"{_NEAR_MISS_ID_PREFIX}{hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]}"
 
 
-def _near_miss_with_id(result: Result, name: str) -> Row:
-    """Return the near miss whose id begins with `name`. Errors: `UsageError` if there is none, or more than one."""
-    found = [row for row in near_misses(result) if row["finding_id"].startswith(name)]
+def _near_miss_with_id(result: Result, id_prefix: str) -> Row:
+    """Return the near miss whose id begins with `id_prefix`. Errors: `UsageError` if there is none, or more than one."""
+    found = [row for row in near_misses(result) if row["finding_id"].startswith(id_prefix)]
     if len(found) != 1:
         raise UsageError(
-            f"--incident {name}: {'several near misses have' if found else 'no near miss has'} an id with this beginning: "
+            f"--incident {id_prefix}: {'several near misses have' if found else 'no near miss has'} an id with this beginning: "
             "name it by its rule and drive (RULE@DRIVE)"
         )
     return found[0]
 
 
-def _nearest_miss(result: Result, verdict: Row, *, of_drive: bool) -> Row | None:
-    """Return the nearest miss of a verdict's rule, in its drive only if `of_drive`; None if there is none."""
-    keys = ("rule_id", "drive_id") if of_drive else ("rule_id",)
+def _nearest_miss_of_rule(result: Result, verdict: Row, *, is_same_drive: bool) -> Row | None:
+    """Return the nearest miss of a verdict's rule, in its drive only if `is_same_drive`; None if there is none."""
+    keys = ("rule_id", "drive_id") if is_same_drive else ("rule_id",)
     return next((row for row in near_misses(result) if all(row[key] == verdict[key] for key in keys)), None)
 
 
-def contacts(result: Result) -> list[Row]:
+def contact_findings(result: Result) -> list[Row]:
     """Return the findings that are contacts, the worst first, sure findings before findings that are only possible."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     found: list[Row] = worst_first(result.findings, rules).to_pylist()
     return [row for row in found if is_contact(row, rules)]
 
 
-def _without_contact(result: Result, drive_id: str) -> str:
-    """Return what to do if no finding is a contact. `drive_id`: the beginning of the drive's id; '' for all drives."""
-    near = [row for row in near_misses(result) if row["drive_id"].startswith(drive_id)]
+def _no_contact_message(result: Result, drive_id_prefix: str) -> str:
+    """Return what to do if no finding is a contact. `drive_id_prefix`: the beginning of the drive's id; '' for all drives."""
+    near = [row for row in near_misses(result) if row["drive_id"].startswith(drive_id_prefix)]
     broken = {(row["rule_id"], row["drive_id"]) for row in result.findings.to_pylist()}
-    found = any(drive.startswith(drive_id) for _, drive in broken)
-    told = f"no finding is a contact{f' in {drive_id}' if drive_id else ''}"
+    found = any(drive.startswith(drive_id_prefix) for _, drive in broken)
+    told = f"no finding is a contact{f' in {drive_id_prefix}' if drive_id_prefix else ''}"
     if near:
         rule, drive = near[0]["rule_id"], near[0]["drive_id"]
         named = near[0]["finding_id"] if (rule, drive) in broken else f"{rule}@{drive}"
@@ -156,9 +156,9 @@ def _without_contact(result: Result, drive_id: str) -> str:
     return f"{told}: {'name another finding' if found else 'nothing was found there that a sheet could be about'}"
 
 
-def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
+def _worst_finding_of_verdict(verdict: Row, result: Result) -> dict[str, Any]:
     """Return the worst finding of a verdict. Errors: `UsageError` if it has none."""
-    rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _SAME)]
+    rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _VERDICT_KEY_COLUMNS)]
     about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
     if verdict["verdict"] != "fail" or not about:
         tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}

@@ -83,14 +83,16 @@ class Judge:
         return EgoRows(verdicts, findings, steps[-1])
 
 
-def same_finding(findings: Sequence[Row], finding: Row, *, tolerance: float = 1e-6) -> Row | None:
+def matching_finding(findings: Sequence[Row], finding: Row, *, margin_tolerance: float = 1e-6) -> Row | None:
     """Return the finding with the same ego, rule, profile, object, worst step and margin as `finding`; None if there is none."""
     same = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
     for row in findings:
-        if all(row[key] == finding[key] for key in same) and _close(row["margin"], finding["margin"], tolerance):
+        if all(row[key] == finding[key] for key in same) and _are_margins_close(
+            row["margin"], finding["margin"], margin_tolerance
+        ):
             return row
     return None
 
 
-def _close(a: float | None, b: float | None, tolerance: float) -> bool:
+def _are_margins_close(a: float | None, b: float | None, tolerance: float) -> bool:
     return a == b if a is None or b is None else abs(a - b) <= tolerance

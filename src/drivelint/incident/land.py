@@ -17,14 +17,14 @@ _CELLS_PER_DEGREE: Final = 2
 _ROWS, _COLUMNS = 180 * _CELLS_PER_DEGREE, 360 * _CELLS_PER_DEGREE
 
 
-def is_at_sea(latitude: float, longitude: float) -> bool:
+def is_far_at_sea(latitude: float, longitude: float) -> bool:
     """Return whether neither the place (degrees) nor any cell beside it has land."""
     row = min(max(int((90.0 - latitude) * _CELLS_PER_DEGREE), 0), _ROWS - 1)
     column = int((longitude + 180.0) * _CELLS_PER_DEGREE) % _COLUMNS
     byte, bit = divmod(row * _COLUMNS + column, 8)
-    return not _land()[byte] >> (7 - bit) & 1
+    return not _land_bits()[byte] >> (7 - bit) & 1
 
 
 @cache
-def _land() -> bytes:
+def _land_bits() -> bytes:
     return zlib.decompress(base64.b64decode(Path(__file__).with_name("land.txt").read_bytes()))

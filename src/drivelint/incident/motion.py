@@ -16,19 +16,19 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-BEFORE_S: Final = 15
-AFTER_S: Final = 2
+SECONDS_BEFORE_MOMENT: Final = 15
+SECONDS_AFTER_MOMENT: Final = 2
 """The table runs from 15 s before the moment to 2 s after it."""
-MOST_ROWS: Final = BEFORE_S + AFTER_S + 2
+MOST_TABLE_ROWS: Final = SECONDS_BEFORE_MOMENT + SECONDS_AFTER_MOMENT + 2
 """The greatest number of rows of the table: its seconds, the moment, and the last step before a contact."""
-SLOWING_MPS2: Final = 1.0
+LEAST_SLOWING_MPS2: Final = 1.0
 """A vehicle whose mean deceleration over half a second is less may be coasting."""
-_TYRES_MPS2, _LEAST_LOSS_MPS = 12.0, 1.0
+_LEAST_IMPACT_LOSS_MPS2, _LEAST_IMPACT_LOSS_MPS = 12.0, 1.0
 """Tyres cannot brake a vehicle this hard: a loss of speed of this rate and size between two steps is an impact."""
 _STANDING_MPS: Final = 0.5
 """The same value as in the rules (`standing_mps`)."""
-_MEAN_S: Final = 0.5
-_MERGE_S: Final = 0.5
+_MEAN_PERIOD_S: Final = 0.5
+_MOST_MERGED_BREAK_S: Final = 0.5
 """Two periods of slowing with a shorter break between them are merged."""
 
 
@@ -74,9 +74,9 @@ class Motion:
                 np.stack([c["vx_mps"], c["vy_mps"]]),
                 np.stack([c["object_vx_mps"], c["object_vy_mps"]]),
             ),
-            backwards=(_is_backwards(c, ""), _is_backwards(c, "object_")),
+            backwards=(_backwards_mask(c, ""), _backwards_mask(c, "object_")),
             lane_offset=(c["lane_offset_m"], c["object_lane_offset_m"]),
-            gap=np.where(np.isnan(exact), _apart(c), exact),
+            gap=np.where(np.isnan(exact), _box_distances_m(c), exact),
             closing=closing,
             relative=np.hypot(de, dn),
             turn=np.abs(c["heading_diff_rad"]),
@@ -119,20 +119,26 @@ class Motion:
         t, v = self.t, self.speed[party] if v is None else v
         start = t[i] - over_s
         within = (t >= start - 1.5 * self.step_s) & (t <= t[i])
-        if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_S).any():
+        if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_PERIOD_S).any():
             return float("nan")
         return float((v[i] - np.interp(start, t, v)) / over_s)
 
     def hardest_braking(self, party: int, i: int) -> float:
         """Return the greatest deceleration (mean of half a second) that ends in the second before a step; 0: none; NaN: not known."""
         ends = np.flatnonzero((self.t > self.t[i] - 1.0 + 1e-9) & (self.t <= self.t[i] + 1e-9)).tolist()
-        means = [self.acceleration(party, end, _MEAN_S) for end in ends if not self.is_sudden(party, end, _MEAN_S)]
+        means = [
+            self.acceleration(party, end, _MEAN_PERIOD_S)
+            for end in ends
+            if not self.is_sudden(party, end, _MEAN_PERIOD_S)
+        ]
         return float(np.maximum(0.0, -np.min(means))) if means else math.nan
 
     def sudden(self, party: int) -> Mask:
         """Return a mask of the steps at which a party has lost speed since the previous step faster than tyres can brake."""
         lost = -np.diff(self.speed[party], prepend=self.speed[party][:1])
-        found: Mask = (lost >= _LEAST_LOSS_MPS) & (lost >= _TYRES_MPS2 * np.diff(self.t, prepend=-np.inf))
+        found: Mask = (lost >= _LEAST_IMPACT_LOSS_MPS) & (
+            lost >= _LEAST_IMPACT_LOSS_MPS2 * np.diff(self.t, prepend=-np.inf)
+        )
         return found
 
     def is_sudden(self, party: int, i: int, over_s: float) -> bool:
@@ -141,23 +147,23 @@ class Motion:
         return bool(self.sudden(party)[within].any())
 
 
-def _is_backwards(columns: dict[str, Floats], of: str) -> Mask:
+def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
     """Return a mask of the steps at which a party moves against its heading, faster than a standing vehicle may seem to move."""
-    yaw = columns[f"{of}yaw_rad"]
-    along: Floats = columns[f"{of}vx_mps"] * np.cos(yaw) + columns[f"{of}vy_mps"] * np.sin(yaw)
+    yaw = columns[f"{column_prefix}yaw_rad"]
+    along: Floats = columns[f"{column_prefix}vx_mps"] * np.cos(yaw) + columns[f"{column_prefix}vy_mps"] * np.sin(yaw)
     found: Mask = along < -_STANDING_MPS
     return found
 
 
-def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
+def is_slowing_known(motion: Motion, party: int, until_s: float) -> bool:
     """Return whether a party's deceleration is known at all recorded steps of the 15 s before `until_s`."""
     t = motion.t
-    begin = max(float(t[0]), until_s - BEFORE_S)
-    steps = np.flatnonzero((t >= begin + _MEAN_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
-    return bool(steps) and not any(np.isnan(motion.acceleration(party, i, _MEAN_S)) for i in steps)
+    begin = max(float(t[0]), until_s - SECONDS_BEFORE_MOMENT)
+    steps = np.flatnonzero((t >= begin + _MEAN_PERIOD_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
+    return bool(steps) and not any(np.isnan(motion.acceleration(party, i, _MEAN_PERIOD_S)) for i in steps)
 
 
-class Slowing(NamedTuple):
+class SlowingPeriod(NamedTuple):
     """A period in which a party slows: start, end, the speeds at both, and the hardest deceleration (mean of half a second).
 
     `sudden`: the party loses speed faster than tyres can brake, as in an impact; then `hardest_mps2` is NaN.
@@ -176,52 +182,62 @@ class Slowing(NamedTuple):
         return (self.from_mps - self.to_mps) / max(self.end_s - self.start_s, 1e-9)
 
 
-def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
-    """Return the periods in which a party slows by `SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
+def slowing_periods(motion: Motion, party: int, until_s: float) -> list[SlowingPeriod]:
+    """Return the periods in which a party slows by `LEAST_SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
     t, v = motion.t, motion.speed[party]
-    steps = np.flatnonzero((t >= until_s - BEFORE_S) & (t <= until_s + 1e-9))
-    mean = {int(i): motion.acceleration(party, int(i), _MEAN_S) for i in steps}
+    steps = np.flatnonzero((t >= until_s - SECONDS_BEFORE_MOMENT) & (t <= until_s + 1e-9))
+    mean = {int(i): motion.acceleration(party, int(i), _MEAN_PERIOD_S) for i in steps}
     sudden = motion.sudden(party)
-    hard = [i for i in steps.tolist() if mean[i] <= -SLOWING_MPS2 and not motion.is_sudden(party, i, _MEAN_S)]
+    hard = [
+        i for i in steps.tolist() if mean[i] <= -LEAST_SLOWING_MPS2 and not motion.is_sudden(party, i, _MEAN_PERIOD_S)
+    ]
     found = [
-        Slowing(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
+        SlowingPeriod(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
         for i in steps.tolist()
         if sudden[i]
     ]
     runs: list[list[int]] = []
     for i in hard:
-        if runs and t[i] - t[runs[-1][-1]] <= _MERGE_S + motion.step_s:
+        if runs and t[i] - t[runs[-1][-1]] <= _MOST_MERGED_BREAK_S + motion.step_s:
             runs[-1].append(i)
         else:
             runs.append([i])
     for run in runs:
         # the deceleration is a mean of the half second before a step: slowing began at the highest speed in it
-        within = np.flatnonzero((t >= t[run[0]] - _MEAN_S - 1e-9) & (t <= t[run[0]]))
+        within = np.flatnonzero((t >= t[run[0]] - _MEAN_PERIOD_S - 1e-9) & (t <= t[run[0]]))
         first = int(within[::-1][np.argmax(v[within[::-1]])])
         found.append(
-            Slowing(float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run))
+            SlowingPeriod(
+                float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run)
+            )
         )
     return sorted(found)
 
 
-def second_by_second(motion: Motion, before_s: float | None) -> list[dict[str, Any]]:
+def rows_per_second(motion: Motion, last_before_contact_s: float | None) -> list[dict[str, Any]]:
     """Return a row per full second from 15 s before to 2 s after the moment, and a row of the last step before a contact."""
-    return [_row(motion, i, t, before_s) for i, t in _table_steps(motion, before_s)]
+    return [
+        _row_at_step(motion, i, t, last_before_contact_s)
+        for i, t in _steps_and_times_of_table(motion, last_before_contact_s)
+    ]
 
 
-def _table_steps(motion: Motion, before_s: float | None) -> Iterator[tuple[int, float]]:
-    times = sorted({float(t) for t in range(-BEFORE_S, AFTER_S + 1)} | ({before_s} if before_s is not None else set()))
+def _steps_and_times_of_table(motion: Motion, last_before_contact_s: float | None) -> Iterator[tuple[int, float]]:
+    times = sorted(
+        {float(t) for t in range(-SECONDS_BEFORE_MOMENT, SECONDS_AFTER_MOMENT + 1)}
+        | ({last_before_contact_s} if last_before_contact_s is not None else set())
+    )
     for t in times:
         if (i := motion.at(t)) is not None:
             yield i, t
 
 
-def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[str, Any]:
+def _row_at_step(motion: Motion, i: int, t: float, last_before_contact_s: float | None) -> dict[str, Any]:
     signed = [motion.signed_speed(party) for party in (0, 1)]
     return {
         "i": i,
         "t": t,
-        "last_before": t == last_before_s,
+        "last_before": t == last_before_contact_s,
         "moment": t == 0,
         "speed": [float(v[i]) for v in signed],
         "accel": [motion.acceleration(party, i, 1.0, signed[party]) for party in (0, 1)],
@@ -233,18 +249,18 @@ def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[
     }
 
 
-def _apart(c: dict[str, Floats]) -> Floats:
+def _box_distances_m(columns: dict[str, Floats]) -> Floats:
     """Return the distance of the two boxes at each step in m; 0 where they overlap."""
-    a, b = (_boxes(c, prefix) for prefix in ("", "object_"))
+    a, b = (_box_corners_m(columns, prefix) for prefix in ("", "object_"))
     known: Mask = np.isfinite(np.concatenate([a, b], axis=1)).all(axis=(1, 2))
     found = np.full(len(a), np.nan)
     found[known] = shapely.distance(shapely.polygons(a[known]), shapely.polygons(b[known]))
     return found
 
 
-def _boxes(c: dict[str, Floats], prefix: str) -> Floats:
+def _box_corners_m(columns: dict[str, Floats], prefix: str) -> Floats:
     """Return the corners of the boxes in map metres, shape (n, 4, 2)."""
-    x, y, yaw, length, width = (c[f"{prefix}{name}"] for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m"))
+    x, y, yaw, length, width = (columns[f"{prefix}{name}"] for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m"))
     corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
     ahead = np.stack([length / 2 * u for u, _ in corners], axis=1)
     left = np.stack([width / 2 * w for _, w in corners], axis=1)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
-from drivelint.incident.case import LETTERS
-from drivelint.incident.delta_v import told_delta_v
+from drivelint.incident.case import PARTY_LETTERS
+from drivelint.incident.delta_v import delta_v_text
 from drivelint.incident.judge import EgoRows
-from drivelint.incident.motion import BEFORE_S, slowing_known
-from drivelint.incident.sizes import size_source
-from drivelint.incident.words import amount, collision_title, nearly_same, speed
+from drivelint.incident.motion import SECONDS_BEFORE_MOMENT, is_slowing_known
+from drivelint.incident.sizes import size_source_text
+from drivelint.incident.words import amount_text, are_speeds_nearly_equal, collision_title, speed_text
 from drivelint.report.html.plan_view import box_corners_m
 from drivelint.result.text import breach_title, seconds
 
@@ -21,58 +21,72 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.incident.case import Case
-    from drivelint.incident.motion import Motion, Slowing
+    from drivelint.incident.motion import Motion, SlowingPeriod
     from drivelint.result.text import Row
 
 _STANDING_MPS: Final = 0.5
 _MOST_OTHER_ACTORS: Final = 3
 """At most this many actors that are not parties are described."""
-_SIDES: Final = {True: "centre in a lane of its direction", False: "centre in the oncoming lane"}
+_LANE_TEXTS: Final = {True: "centre in a lane of its direction", False: "centre in the oncoming lane"}
 
 
-def party(
-    case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
+def party_values(
+    case: Case,
+    motion: Motion,
+    party_no: int,
+    step_no: int | None,
+    last_before_contact_s: float | None,
+    *,
+    slowings: Sequence[SlowingPeriod],
 ) -> dict[str, Any]:
     """Return the values of one party: kind, size, lane, speeds, delta-v, braking and brake lights.
 
-    `number`: 0 for A, 1 for B; `at`: the step that the sheet describes; `before_s`: the time of the last step before a contact.
+    `party_no`: 0 for A, 1 for B; `step_no`: the step that the sheet describes;
+    `last_before_contact_s`: the time of the last step before a contact.
     """
-    actor_id = case.finding.parties[number]
+    actor_id = case.finding.parties[party_no]
     tables = case.drive.trace.tables
     about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
-    v = motion.speed[number]
-    window = v[(motion.t >= -BEFORE_S - 1e-9) & (motion.t <= (0.0 if before_s is None else before_s) + 1e-9)]
+    v = motion.speed[party_no]
+    window = v[
+        (motion.t >= -SECONDS_BEFORE_MOMENT - 1e-9)
+        & (motion.t <= (0.0 if last_before_contact_s is None else last_before_contact_s) + 1e-9)
+    ]
     fastest = window[~np.isnan(window)].max(initial=-math.inf)
     gaps = " (not known throughout)" if np.isnan(window).any() else ""
     size = [about.get(name) for name in ("length_m", "width_m", "height_m")]
     return {
-        "letter": LETTERS[number],
+        "letter": PARTY_LETTERS[party_no],
         "id": actor_id,
-        "ego": number == 0,
+        "ego": party_no == 0,
         "kind": (about.get("actor_class") or "kind not recorded").replace("_", " "),
-        "size_source": size_source(case.drive.trace, actor_id),
+        "size_source": size_source_text(case.drive.trace, actor_id),
         "size": " x ".join("?" if side is None else f"{side:.2f}" for side in size) + " m",
-        "lane": _lane(case, number, at),
-        "speed": "not known" if at is None else speed(float(v[at])),
-        "delta_v": told_delta_v(motion, number, None if before_s is None else at, case.drive.trace, actor_id),
-        "fastest": "not known" if math.isinf(fastest) else f"{speed(float(fastest))}{gaps}",
-        "slowed": _slowed(slowed, before_s),
-        "slowing_known": slowing_known(motion, number, 0.0 if before_s is None else before_s),
-        "lights": _brake_lights(case, actor_id),
+        "lane": _lane_text(case, party_no, step_no),
+        "speed": "not known" if step_no is None else speed_text(float(v[step_no])),
+        "delta_v": delta_v_text(
+            motion, party_no, None if last_before_contact_s is None else step_no, case.drive.trace, actor_id
+        ),
+        "fastest": "not known" if math.isinf(fastest) else f"{speed_text(float(fastest))}{gaps}",
+        "slowed": _slowing_texts(slowings, last_before_contact_s),
+        "slowing_known": is_slowing_known(
+            motion, party_no, 0.0 if last_before_contact_s is None else last_before_contact_s
+        ),
+        "lights": _brake_lights_text(case, actor_id),
     }
 
 
-def kinds(case: Case) -> list[str | None]:
+def party_kinds(case: Case) -> list[str | None]:
     """Return the class of each party in words; None if it is not recorded."""
     classes = {row["actor_id"]: row["actor_class"] for row in case.drive.trace.tables["actor"].to_pylist()}
     return [(classes.get(who) or "").replace("_", " ") or None for who in case.finding.parties]
 
 
-def _slowed(slowings: Sequence[Slowing], before_s: float | None) -> list[str]:
+def _slowing_texts(slowings: Sequence[SlowingPeriod], last_before_contact_s: float | None) -> list[str]:
     """Return the last two periods of slowing in words, and the number of earlier periods."""
     texts = [f"{len(slowings) - 2} earlier"] if len(slowings) > 2 else []
     for each in slowings[-2:]:
-        until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
+        until = "the last step before contact" if each.end_s == last_before_contact_s else f"{each.end_s:+.2f} s"
         if each.sudden:
             how = f"lost within {each.end_s - each.start_s:.2f} s, faster than tyres brake: as in an impact"
         else:
@@ -85,7 +99,7 @@ def _slowed(slowings: Sequence[Slowing], before_s: float | None) -> list[str]:
     return texts
 
 
-def _brake_lights(case: Case, actor_id: str) -> str:
+def _brake_lights_text(case: Case, actor_id: str) -> str:
     """Return in words when the brake lights were on in the 15 s before the moment."""
     moment = case.finding.moment_ns
     states = [
@@ -94,7 +108,7 @@ def _brake_lights(case: Case, actor_id: str) -> str:
             *(case.drive.trace.tables["actor_state"][name].to_pylist() for name in ("actor_id", "t_ns", "brake_light")),
             strict=True,
         )
-        if who == actor_id and moment - BEFORE_S * 10**9 <= t_ns <= moment
+        if who == actor_id and moment - SECONDS_BEFORE_MOMENT * 10**9 <= t_ns <= moment
     ]
     known = [(t_ns, light) for t_ns, light in states if light is not None]
     if not known:
@@ -108,31 +122,31 @@ def _brake_lights(case: Case, actor_id: str) -> str:
     )
 
 
-def _lane(case: Case, number: int, at: int | None) -> str:
-    """Return in words whether a party is in a lane of its direction or in the oncoming lane at step `at` of the first party.
+def _lane_text(case: Case, party_no: int, step_no: int | None) -> str:
+    """Return in words whether a party is in a lane of its direction or in the oncoming lane at step `step_no` of the first party.
 
-    `at`: None, if that moment was not examined. The words also say when the party left its lane.
+    `step_no`: None, if that moment was not examined. The words also say when the party left its lane.
     """
-    judged = (case.again, case.other_party)[number]
-    if at is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
+    judged = (case.again, case.other_party)[party_no]
+    if step_no is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
         return "not examined"
-    t_ns = case.again.steps["t_ns"][at].as_py()
+    t_ns = case.again.steps["t_ns"][step_no].as_py()
     i = int(np.searchsorted(judged.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1
     if i < 0:
         return "not known"
     step = judged.steps.slice(i, 1).to_pylist()[0]
-    said: str = _SIDES.get(step["with_traffic"], "lane not known")
+    said: str = _LANE_TEXTS.get(step["with_traffic"], "lane not known")
     if step["out_since_ns"] is not None:
         said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.start_ns)}"
         said += " and is not completely back" if step["with_traffic"] else ""
     return said
 
 
-def overtaking(case: Case, at: int | None) -> str:
-    """Return in words which vehicles A was overtaking at step `at`, and whether A was in the oncoming lane; '' for no vehicle."""
-    if at is None:
+def overtaking_text(case: Case, step_no: int | None) -> str:
+    """Return in words which vehicles A was overtaking at step `step_no`, and whether A was in the oncoming lane; '' for no vehicle."""
+    if step_no is None:
         return ""
-    t_ns, row = case.again.steps["t_ns"][at].as_py(), case.finding.row
+    t_ns, row = case.again.steps["t_ns"][step_no].as_py(), case.finding.row
     passed = sorted(
         {
             each["vbp_id"]
@@ -141,25 +155,30 @@ def overtaking(case: Case, at: int | None) -> str:
             and each["t0_ns"] <= t_ns <= each["t_end_ns"]
         }
     )
-    against = case.again.steps["with_traffic"][at].as_py() is False
+    against = case.again.steps["with_traffic"][step_no].as_py() is False
     return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
 
 
-def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
+def sheet_title(case: Case, motion: Motion, step_no: int | None, *, is_only_possible: bool) -> str:
     """Return the title of the sheet: a collision of A and B, the broken rule, or the rule that was nearly broken."""
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.start_ns)
     if finding.is_near_miss:
-        return (
-            f"Near miss at {when}: \u201c{finding.rule['title']}\u201d was kept by {amount(row['margin'], row['unit'])}"
-        )
+        return f"Near miss at {when}: \u201c{finding.rule['title']}\u201d was kept by {amount_text(row['margin'], row['unit'])}"
     if not finding.is_contact or len(finding.parties) < 2:
-        return f"{breach_title(finding.rule)}{', possibly' if possible else ''}, at {when}"
-    oncoming = at is not None and case.again.steps["with_traffic"][at].as_py() is False
-    return collision_title(motion, at, when=when, closing_mps=row["closing_mps"], oncoming=oncoming, possible=possible)
+        return f"{breach_title(finding.rule)}{', possibly' if is_only_possible else ''}, at {when}"
+    oncoming = step_no is not None and case.again.steps["with_traffic"][step_no].as_py() is False
+    return collision_title(
+        motion,
+        step_no,
+        time_text=when,
+        closing_mps=row["closing_mps"],
+        is_in_oncoming_lane=oncoming,
+        is_only_possible=is_only_possible,
+    )
 
 
-def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
+def other_actor_texts(plan: Mapping[str, Any], scene: Row) -> list[str]:
     """Return in words the other actors in the plan view: kind, size, speed, and distance from A."""
     actors = {actor["actor_id"]: actor for actor in scene["actors"]}
     ego = shapely.polygons(box_corners_m(plan["ego"]))
@@ -176,11 +195,11 @@ def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
     return told[:_MOST_OTHER_ACTORS] + more
 
 
-def against_each_other(relative_mps: float, closing_mps: float | None) -> str:
+def relative_speed_text(relative_mps: float, closing_mps: float | None) -> str:
     """Return the relative speed of both parties in words, and the closing speed of the box centres if it differs."""
     if math.isnan(relative_mps):
         return "relative speed not known"
-    said = f"relative speed {speed(relative_mps)}"
-    if closing_mps is None or nearly_same(relative_mps, closing_mps):
+    said = f"relative speed {speed_text(relative_mps)}"
+    if closing_mps is None or are_speeds_nearly_equal(relative_mps, closing_mps):
         return said
     return f"{said}; the box centres {'move apart' if closing_mps < 0 else 'approach'} at {abs(closing_mps):.1f} m/s"

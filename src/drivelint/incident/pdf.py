@@ -12,11 +12,11 @@ from typing import Final
 
 from drivelint.errors import DriveLintError, ExitCode, UsageError
 
-_BROWSERS: Final = (
+_BROWSER_COMMANDS: Final = (
     "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge", "msedge",
 )  # fmt: skip
-_PATIENCE_S: Final = 120
-_DATE: Final = re.compile(rb"(/(?:CreationDate|ModDate) \(D:)\d{14}")
+_PRINT_TIMEOUT_S: Final = 120
+_DATE_PATTERN: Final = re.compile(rb"(/(?:CreationDate|ModDate) \(D:)\d{14}")
 
 
 class PdfError(DriveLintError):
@@ -27,7 +27,7 @@ class PdfError(DriveLintError):
 
 def find_browser() -> str:
     """Return the path of an installed browser that can print a PDF. Errors: `UsageError` if there is none."""
-    found = next((path for name in _BROWSERS if (path := shutil.which(name))), None)
+    found = next((path for name in _BROWSER_COMMANDS if (path := shutil.which(name))), None)
     if found is None:
         raise UsageError(
             "--pdf needs Chromium to print the PDF, and none is installed: install chromium (or Google Chrome), or print the HTML page "
@@ -36,7 +36,7 @@ def find_browser() -> str:
     return found
 
 
-def print_page(html: bytes, browser: str) -> bytes:
+def pdf_of_page(html: bytes, browser: str) -> bytes:
     """Return a page as PDF; the same page and browser give the same bytes. Errors: `PdfError`."""
     with TemporaryDirectory(prefix="drivelint-") as folder:
         page, out = Path(folder, "page.html"), Path(folder, "page.pdf")
@@ -46,10 +46,10 @@ def print_page(html: bytes, browser: str) -> bytes:
         flags += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
         command = [browser, *flags, "--no-pdf-header-footer", f"--print-to-pdf={out}", page.as_uri()]
         try:
-            subprocess.run(command, check=True, capture_output=True, timeout=_PATIENCE_S)  # noqa: S603 - no shell, our words
+            subprocess.run(command, check=True, capture_output=True, timeout=_PRINT_TIMEOUT_S)  # noqa: S603 - no shell, our words
             content = out.read_bytes()
         except (OSError, subprocess.SubprocessError) as error:
             raise PdfError(
                 f"{browser} did not print the page: {str(error).splitlines()[0]}: print the HTML page from another browser"
             ) from error
-    return _DATE.sub(rb"\g<1>19700101000000", content)
+    return _DATE_PATTERN.sub(rb"\g<1>19700101000000", content)

@@ -9,8 +9,8 @@ import numpy as np
 from drivelint.convert import CLIP_CHECK_ID
 from drivelint.drive.trace import TURNED_FRAME_CHECK
 from drivelint.engine.earth import frame_of_map
-from drivelint.incident.land import is_at_sea
-from drivelint.incident.words import minus
+from drivelint.incident.land import is_far_at_sea
+from drivelint.incident.words import text_with_minus_signs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from drivelint.incident.case import Case
     from drivelint.result.text import Row
 
-_SURROUNDINGS: Final = ("weather", "light")
-_INFERRED: Final = {
+_SURROUNDING_CONDITIONS: Final = ("weather", "light")
+_INFERRED_SIDE_TEXTS: Final = {
     "junctions": "inferred from the links in the map's junctions",
     "lanes": "inferred from the positions of the map's lanes",
     "traces": "inferred from the traffic in the log",
@@ -39,7 +39,7 @@ class Place(NamedTuple):
     lanelet_id: str | None
 
 
-def place(case: Case) -> Place:
+def place_at_moment(case: Case) -> Place:
     """Return A's place at the moment of the finding; if that is not known, its place at the worst step."""
     row, moment_ns = case.finding.row, case.finding.moment_ns
     steps = case.again.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
@@ -54,9 +54,9 @@ def place(case: Case) -> Place:
     return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
 
 
-def sea_note(where: Place, source: str) -> str:
+def doubtful_at_sea_text(where: Place, source: str) -> str:
     """Return in words why the coordinates are doubted, if they are far out at sea; else ''. `source`: that of `geo_source`."""
-    if where.lat is None or where.lon is None or not is_at_sea(where.lat, where.lon):
+    if where.lat is None or where.lon is None or not is_far_at_sea(where.lat, where.lon):
         return ""
     return f"by the {source}'s geo reference, doubtful: in the sea"
 
@@ -67,16 +67,16 @@ def geo_source(case: Case) -> str:
     return "map" if environment is not None and frame_of_map(environment) is not None else "log"
 
 
-def surroundings(drive: Row) -> str:
+def weather_and_light_text(drive: Row) -> str:
     """Return weather and light in words, also which of them is not known."""
     known = {each["condition"]: each["value"] for each in drive["conditions"]}
-    told = [f"{name} {known[name]}" for name in _SURROUNDINGS if name in known]
-    lost = [name for name in _SURROUNDINGS if name not in known]
+    told = [f"{name} {known[name]}" for name in _SURROUNDING_CONDITIONS if name in known]
+    lost = [name for name in _SURROUNDING_CONDITIONS if name not in known]
     parts = [", ".join(told)] if told else []
     return "; ".join([*parts, f"{' and '.join(lost)} not known"] if lost else parts).capitalize()
 
 
-def coordinates(case: Case) -> str:
+def coordinates_source_text(case: Case) -> str:
     """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
     said = "the recording's coordinates"
@@ -84,28 +84,28 @@ def coordinates(case: Case) -> str:
         said = "the clip's coordinates"  # a clip contains the coordinates that were judged
     elif TURNED_FRAME_CHECK in checks:
         said += " with the sign of y changed, as its frame is left-handed"
-    dx, dy = _map_offset(case)
-    return f"{said}{minus(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
+    dx, dy = _map_offset_m(case)
+    return f"{said}{text_with_minus_signs(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
 
 
-def inferred_side(drive: Row) -> str:
+def inferred_driving_side_text(drive: Row) -> str:
     """Return in words the side of the road that is driven on, and how it was inferred; '' if it was not inferred."""
     side = {"lht": "Left", "rht": "Right"}.get(drive["handedness"])
-    how = _INFERRED.get(drive["handedness_source"])
+    how = _INFERRED_SIDE_TEXTS.get(drive["handedness_source"])
     return f"{side}-hand traffic: {how}." if side and how else ""
 
 
-def road_of(case: Case, lanelet: str | None) -> str | None:
+def road_id_of_lanelet(case: Case, lanelet_id: str | None) -> str | None:
     """Return the id of the road of a lanelet; None if the lanelet, its road or the map is not known."""
     environment = case.drive.environment
-    if lanelet is None or environment is None:
+    if lanelet_id is None or environment is None:
         return None
     rows: Mapping[str, Any] = environment.tables["lanelet"].select(["lanelet_id", "road_id"]).to_pydict()
     roads = dict(zip(rows["lanelet_id"], rows["road_id"], strict=True))
-    return roads.get(lanelet)
+    return roads.get(lanelet_id)
 
 
-def _map_offset(case: Case) -> tuple[float, float]:
+def _map_offset_m(case: Case) -> tuple[float, float]:
     """Return the offset in metres along x and y by which the map was moved to fit the log."""
     if case.drive.environment is None:
         return 0.0, 0.0

@@ -13,20 +13,45 @@ import numpy as np
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
-from drivelint.incident.case import LETTERS
-from drivelint.incident.command import commands, named_by_user
-from drivelint.incident.conduct import conduct, name_party
-from drivelint.incident.delta_v import WINDOW_S
-from drivelint.incident.fitting import SHARED_HEAD, Fitting, check_room, first_fitting, fit, is_crowded, shared_reasons
-from drivelint.incident.judge import same_finding
-from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
-from drivelint.incident.parties import against_each_other, kinds, overtaking, party, title
-from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, sea_note, surroundings
-from drivelint.incident.record import held_elements
-from drivelint.incident.scene import plan_at_moment
-from drivelint.incident.sizes import size_source
-from drivelint.incident.strips import strips
-from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
+from drivelint.incident.case import PARTY_LETTERS
+from drivelint.incident.command import reproducing_commands, rule_ids_named_by_user
+from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name
+from drivelint.incident.delta_v import IMPACT_WINDOW_S
+from drivelint.incident.fitting import (
+    SHARED_HEADING_CHARACTERS,
+    FittedTexts,
+    characters_lost_to_hash_lines,
+    extract_shared_reasons,
+    first_fitted_texts,
+    fit_conduct_lists,
+    is_first_page_full,
+)
+from drivelint.incident.judge import matching_finding
+from drivelint.incident.motion import MOST_TABLE_ROWS, SECONDS_BEFORE_MOMENT, Motion, rows_per_second, slowing_periods
+from drivelint.incident.parties import overtaking_text, party_kinds, party_values, relative_speed_text, sheet_title
+from drivelint.incident.place import (
+    coordinates_source_text,
+    doubtful_at_sea_text,
+    geo_source,
+    inferred_driving_side_text,
+    place_at_moment,
+    road_id_of_lanelet,
+    weather_and_light_text,
+)
+from drivelint.incident.record import elements_by_presence
+from drivelint.incident.scene import plan_view_at_moment
+from drivelint.incident.sizes import size_source_text
+from drivelint.incident.strips import charts_over_time, gap_and_finding_courses
+from drivelint.incident.words import (
+    amount_text,
+    box_overlap_text,
+    certainty_text,
+    closing_speed_text,
+    measured_and_required_text,
+    profile_text,
+    story_sentence,
+    text_with_minus_signs,
+)
 from drivelint.report.html.pictures import cameras_by_moment
 from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
@@ -37,50 +62,50 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-SPAN_S: Final = (15, 7)
+CONDUCT_SPAN_S: Final = (15, 7)
 """The conduct of each party is reported from this long before the moment to this long after it."""
-_NO_NUMBER: Final = "-"
-_CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
+_UNKNOWN_NUMBER_TEXT: Final = "-"
+_CLIP_NAME_PATTERN: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """The name of a clip from `convert --clip`, see `clip.py`."""
 _CLIP_NOTE: Final = "; values that depend on the time before or after it may differ from those of the log"
-_LONGEST: Final = 330
+_LONGEST_SENTENCE_CHARACTERS: Final = 330
 _NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
-_RECORDS_ROOM: Final = 1050
+_RECORDS_CHARACTERS: Final = 1050
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
-_MOST_CONTACTS: Final = 2
+_MOST_LISTED_CONTACTS: Final = 2
 
 
-def content(case: Case) -> dict[str, Any]:
+def template_values(case: Case) -> dict[str, Any]:
     """Return all values of the template."""
     finding, row = case.finding, case.finding.row
     motion = Motion.of_steps(case.again.steps, finding.moment_ns)
     before = motion.last_apart_before(0.0) if finding.is_contact else None
     at = motion.at(0.0) if before is None else before
     before_s = None if before is None else float(motion.t[before])
-    slowed = [slowings(motion, no, before_s or 0.0) for no in range(len(finding.parties))]
+    slowed = [slowing_periods(motion, no, before_s or 0.0) for no in range(len(finding.parties))]
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
-    rows = second_by_second(motion, before_s)
-    span, where = _span(finding), place(case)
+    rows = rows_per_second(motion, before_s)
+    span, where = _conduct_span_ns(finding), place_at_moment(case)
     told = {
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
         "what": _finding_sentence(finding),
-        "story": story(
+        "story": story_sentence(
             motion,
             at,
             slowed,
-            kinds=kinds(case),
-            did=overtaking(case, at),
+            party_kinds=party_kinds(case),
+            manoeuvre_text=overtaking_text(case, at),
             closing_mps=row["closing_mps"],
-            offset_s=offset_s,
+            moment_from_start_s=offset_s,
         ),
-        "clip_of": _clip_of(finding.drive["file_name"]),
-        "cut_from": _cut_from(case),
-        "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(before_s or 0.0)} s",
-        "profile": profile(row["profile"]),
+        "clip_of": _log_name_of_clip(finding.drive["file_name"]),
+        "cut_from": _clip_source_texts(case),
+        "recorded": f"{_signed_number_text(max(float(motion.t[0]), -SECONDS_BEFORE_MOMENT))} s to {_signed_number_text(before_s or 0.0)} s",
+        "profile": profile_text(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
         "worst": seconds(row["t_worst_ns"], finding.start_ns),
         "stretch": None
@@ -89,65 +114,72 @@ def content(case: Case) -> dict[str, Any]:
         "utc": utc_at(finding.moment_ns, finding.drive),
         "place": where,
         "placed": seconds(where.t_ns, finding.start_ns),
-        "road_id": road_of(case, where.lanelet_id),
-        "coordinates": coordinates(case),
+        "road_id": road_id_of_lanelet(case, where.lanelet_id),
+        "coordinates": coordinates_source_text(case),
         "geo_source": (source := geo_source(case)),
-        "at_sea": sea_note(where, source),
-        "surroundings": surroundings(finding.drive),
-        "hand": inferred_side(finding.drive),
+        "at_sea": doubtful_at_sea_text(where, source),
+        "surroundings": weather_and_light_text(finding.drive),
+        "hand": inferred_driving_side_text(finding.drive),
         "contact": finding.is_contact,
         "near": finding.is_near_miss,
-        "near_margin": amount(finding.rule["near_margin"], row["unit"]),
-        "delta_v_s": WINDOW_S,
+        "near_margin": amount_text(finding.rule["near_margin"], row["unit"]),
+        "delta_v_s": IMPACT_WINDOW_S,
         "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
-        "parties": [party(case, motion, no, at, before_s, slowed=slowed[no]) for no in range(len(finding.parties))],
-        "closing": closing(row["closing_mps"]),
-        "against": None if at is None else against_each_other(float(motion.relative[at]), row["closing_mps"]),
-        "gap": None if at is None else _metres(float(motion.gap[at])),
-        "least": _least_gap(motion, finding),
-        "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
-        "overlap": contact(row, finding.rule),
-        **plan_at_moment(case),
+        "parties": [
+            party_values(case, motion, no, at, before_s, slowings=slowed[no]) for no in range(len(finding.parties))
+        ],
+        "closing": closing_speed_text(row["closing_mps"]),
+        "against": None if at is None else relative_speed_text(float(motion.relative[at]), row["closing_mps"]),
+        "gap": None if at is None else _metres_text(float(motion.gap[at])),
+        "least": _least_gap_text(motion, finding),
+        "contacts": FittedTexts(
+            (hits := _other_contact_texts(case))[:_MOST_LISTED_CONTACTS], max(len(hits) - _MOST_LISTED_CONTACTS, 0)
+        ),
+        "overlap": box_overlap_text(row, finding.rule),
+        **plan_view_at_moment(case),
         "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
-        "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
+        "strips": charts_over_time(motion, _party_names(finding), *gap_and_finding_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
         "span": {
             "of": span,
-            "before": figure((finding.moment_ns - span[0]) / 1e9, 1),
-            "after": figure((span[1] - finding.moment_ns) / 1e9, 1),
+            "before": number_or_dash((finding.moment_ns - span[0]) / 1e9, 1),
+            "after": number_or_dash((span[1] - finding.moment_ns) / 1e9, 1),
         },
-        "recording": _recording(finding),
+        "recording": _recording_time_texts(finding),
         "errors": MeasurementErrors().words,
         "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
-        "sure": _surest(case),
-        "rests": _rests_on(case, motion),
-        "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
-        "quality": _told_warnings(case),
-        "again": same_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
+        "sure": _certainty_values(case),
+        "rests": _sudden_contact_sentence(case, motion),
+        "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
+        "quality": _first_warning_texts(case),
+        "again": matching_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
         "source": case.source,
-        "commands": commands(
-            case.run_options, finding, case.result.rules["rule_id"].to_pylist(), named_by_user(case.result.rules)
+        "commands": reproducing_commands(
+            case.run_options,
+            finding,
+            case.result.rules["rule_id"].to_pylist(),
+            rule_ids_named_by_user(case.result.rules),
         ),
         "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
-        "rules_sha256": _rules_hash(case.result),
+        "rules_sha256": _rules_sha256(case.result),
         "n_rules": case.result.rules.num_rows,
     }
-    told["title"] = title(case, motion, at, possible=told["sure"]["title"] == POSSIBLE)
-    told["crowded"] = is_crowded(told)
+    told["title"] = sheet_title(case, motion, at, is_only_possible=told["sure"]["title"] == POSSIBLE)
+    told["crowded"] = is_first_page_full(told)
     taken = (
-        check_room([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
-        + _RECORDS_ROOM * told["crowded"]
+        characters_lost_to_hash_lines([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
+        + _RECORDS_CHARACTERS * told["crowded"]
     )
-    return {**told, **_conduct(case, span, MOST_ROWS - len(rows), taken)}
+    return {**told, **_conduct_values(case, span, MOST_TABLE_ROWS - len(rows), taken)}
 
 
-def figure(value: float | None, digits: int = 2) -> str:
+def number_or_dash(value: float | None, digits: int = 2) -> str:
     """Return a number for the table; a dash if it is not known."""
     if value is None or math.isnan(value):
-        return _NO_NUMBER
+        return _UNKNOWN_NUMBER_TEXT
     text = f"{value:.{digits}f}"
     return text.removeprefix("-") if float(text) == 0 else text.replace("-", "\u2212")
 
@@ -155,38 +187,38 @@ def figure(value: float | None, digits: int = 2) -> str:
 def _finding_sentence(finding: NamedFinding) -> str:
     """Return the finding in one sentence."""
     row, rule = finding.row, finding.rule
-    if overlap := contact(row, rule):
+    if overlap := box_overlap_text(row, rule):
         return f"{overlap[:1].upper()}{overlap[1:]}."
-    observed = measured_text(row, rule)
+    observed = measured_and_required_text(row, rule)
     if observed and row["margin"] is not None:
         by = "kept by" if finding.is_near_miss else "missed by"
-        observed = f"{rule['observes'] or 'measured'}: {observed}; {by} {amount(abs(row['margin']), row['unit'])}"
+        observed = f"{rule['observes'] or 'measured'}: {observed}; {by} {amount_text(abs(row['margin']), row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
         observed += " (of the speed alone, not of its direction; from one step to the next)"
     reason = "" if row["reason_measures"] and observed else row["reason"]
     text = "; ".join(part for part in (reason, observed) if part)
-    return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST, placeholder=" ...")
+    return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST_SENTENCE_CHARACTERS, placeholder=" ...")
 
 
-def _names(finding: NamedFinding) -> list[str]:
-    return [f"{letter} ({who})" for letter, who in zip(LETTERS, finding.parties, strict=False)]
+def _party_names(finding: NamedFinding) -> list[str]:
+    return [f"{letter} ({who})" for letter, who in zip(PARTY_LETTERS, finding.parties, strict=False)]
 
 
-def _clip_of(file_name: str) -> str | None:
+def _log_name_of_clip(file_name: str) -> str | None:
     """Return the name of the log that a clip was cut from, taken from the clip's name; None if the file is no clip."""
-    named = _CLIP.match(file_name.partition(".")[0])
+    named = _CLIP_NAME_PATTERN.match(file_name.partition(".")[0])
     return named[1] if named else None
 
 
-def _signed(s: float) -> str:
-    return minus(f"{s:+.2f}") if s else "0"
+def _signed_number_text(s: float) -> str:
+    return text_with_minus_signs(f"{s:+.2f}") if s else "0"
 
 
-def _metres(value: float) -> str:
+def _metres_text(value: float) -> str:
     return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
-def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
+def _least_gap_text(motion: Motion, finding: NamedFinding) -> str | None:
     """Return the least gap between the two parties in the whole drive, in words; None if no gap is known."""
     known = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
     if not known:
@@ -197,7 +229,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
     return f"{deep} at {at:.2f} s"
 
 
-def _contacts(case: Case) -> list[Row]:
+def _other_contacts_of_ego(case: Case) -> list[Row]:
     """Return the contacts of A in this drive, except the sheet's finding, in time order."""
     mine = case.finding.row
     tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT_TAG in rule["tags"]}
@@ -213,19 +245,19 @@ def _contacts(case: Case) -> list[Row]:
     return sorted(found, key=lambda row: (row["t_start_ns"], row["rule_id"], row["ego_id"]))
 
 
-def _is_of_both(case: Case, row: Row) -> bool:
+def _is_between_parties(case: Case, row: Row) -> bool:
     """Return whether a contact is between the two parties."""
     return {row["ego_id"], row["object_id"]} == set(case.finding.parties)
 
 
-def _told_contacts(case: Case) -> list[str]:
+def _other_contact_texts(case: Case) -> list[str]:
     """Return in words the contacts of the two parties that other rules found, and the contacts of A with other actors."""
     titles = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist()}
     told = []
-    for row in _contacts(case):
-        sure = f"; {how_sure(row)}" if row["n_copies"] is not None else ""
+    for row in _other_contacts_of_ego(case):
+        sure = f"; {certainty_text(row)}" if row["n_copies"] is not None else ""
         at = seconds(row["t_start_ns"], case.finding.start_ns)
-        both = _is_of_both(case, row)
+        both = _is_between_parties(case, row)
         if not both or row["rule_id"] != case.finding.row["rule_id"]:
             other = row["object_id"] if row["ego_id"] == case.finding.row["ego_id"] else row["ego_id"]
             whom, by = "" if both else f" with {other}", titles[row["rule_id"]]
@@ -233,18 +265,18 @@ def _told_contacts(case: Case) -> list[str]:
     return told
 
 
-def _warnings(case: Case) -> list[str]:
+def _warning_texts(case: Case) -> list[str]:
     return [check["message"] for check in case.finding.drive["quality"] if check["severity"] != "info"]
 
 
-def _told_warnings(case: Case) -> Fitting:
+def _first_warning_texts(case: Case) -> FittedTexts:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
-    shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warnings(case)]
-    return first_fitting(shortened, _WARNING_CHARACTERS)
+    shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warning_texts(case)]
+    return first_fitted_texts(shortened, _WARNING_CHARACTERS)
 
 
-def _cut_from(case: Case) -> list[str]:
+def _clip_source_texts(case: Case) -> list[str]:
     return [
         f"{check['message']}{_CLIP_NOTE}"
         for check in case.finding.drive["quality"]
@@ -252,21 +284,27 @@ def _cut_from(case: Case) -> list[str]:
     ]
 
 
-def _recording(finding: NamedFinding) -> dict[str, str]:
+def _recording_time_texts(finding: NamedFinding) -> dict[str, str]:
     """Return the recording's length, and its start and end in seconds from the moment."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
     from_s, to_s = ((t_ns - finding.moment_ns) / 1e9 for t_ns in (finding.start_ns, end_ns))
-    return {"length": seconds(end_ns, finding.start_ns), "from": _signed(from_s), "to": _signed(to_s)}
+    return {
+        "length": seconds(end_ns, finding.start_ns),
+        "from": _signed_number_text(from_s),
+        "to": _signed_number_text(to_s),
+    }
 
 
-def _span(finding: NamedFinding) -> tuple[int, int]:
+def _conduct_span_ns(finding: NamedFinding) -> tuple[int, int]:
     """Return start and end of the time in which the conduct of each party is reported, within the recording."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
-    first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), SPAN_S, strict=True))
+    first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), CONDUCT_SPAN_S, strict=True))
     return max(first, finding.start_ns), min(last, end_ns)
 
 
-def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characters: int) -> dict[str, Any]:
+def _conduct_values(
+    case: Case, span_ns: tuple[int, int], unused_second_rows: int, used_characters: int
+) -> dict[str, Any]:
     """Return the conduct of each party from its verdicts as ego, and the reasons why rules are undecided for both parties."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
@@ -276,31 +314,33 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
         for row in case.result.findings.to_pylist()
     }
     found: list[dict[str, Any]] = []
-    for letter, who, judged in zip(LETTERS, finding.parties, (case.again, case.other_party), strict=False):
+    for letter, who, judged in zip(PARTY_LETTERS, finding.parties, (case.again, case.other_party), strict=False):
         told: dict[str, Any] = {
             "letter": letter,
             "id": who,
-            "ego": letter == LETTERS[0],
+            "ego": letter == PARTY_LETTERS[0],
             "in_report": who in {ego["ego_id"] for ego in finding.drive["exposure"]},
             "not_judged": judged if isinstance(judged, str) else "",
         }
         if judged is not None and not isinstance(judged, str):
             findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
-            told |= conduct(judged.verdicts, findings, rules, span, finding.start_ns, touched=finding.is_contact)
+            told |= conduct_texts_and_counts(
+                judged.verdicts, findings, rules, span_ns, finding.start_ns, is_about_contact=finding.is_contact
+            )
         found.append(told)
-    of_both = shared_reasons(found)
-    found = [name_party(told, told["letter"]) for told in found]
-    of_both = name_party(of_both, "either")
+    of_both = extract_shared_reasons(found)
+    found = [conduct_with_party_name(told, told["letter"]) for told in found]
+    of_both = conduct_with_party_name(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
-    lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
-    lines += _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case)))
-    further = fit([*found, of_both], seconds_left, lines)
+    lines = used_characters + beside + SHARED_HEADING_CHARACTERS * bool(of_both["reasons"])
+    lines += _NOTE_CHARACTERS * (bool(_warning_texts(case)) + bool(_clip_source_texts(case)))
+    further = fit_conduct_lists([*found, of_both], unused_second_rows, lines)
     has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
     return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
 
 
-def _surest(case: Case) -> dict[str, Any]:
+def _certainty_values(case: Case) -> dict[str, Any]:
     """Return how sure the finding is (`word`, `n`: copies, `stays`: copies in which it stays).
 
     `title`: for a contact, the certainty of the surest finding of the same contact, else `word`; `by`: that finding's rule, in words.
@@ -308,19 +348,22 @@ def _surest(case: Case) -> dict[str, Any]:
     row, rules = case.finding.row, {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     told = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
     if case.finding.is_contact and told["word"] == POSSIBLE:
-        for other in _contacts(case):
+        for other in _other_contacts_of_ego(case):
             same = (
-                _is_of_both(case, other)
+                _is_between_parties(case, other)
                 and other["t_start_ns"] <= row["t_end_ns"]
                 and other["t_end_ns"] >= row["t_start_ns"]
             )
             if same and certainty(other) == SURE:
-                told |= {"title": SURE, "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({how_sure(other)})"}
+                told |= {
+                    "title": SURE,
+                    "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({certainty_text(other)})",
+                }
                 break
     return told
 
 
-def _rests_on(case: Case, motion: Motion) -> str:
+def _sudden_contact_sentence(case: Case, motion: Motion) -> str:
     """Return in words how a contact is known if no boxes overlap: from a sudden change of speed; '' for other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
@@ -339,37 +382,12 @@ def _rests_on(case: Case, motion: Motion) -> str:
     boxes = (
         "the boxes do not touch at that time" if 0 < known.size == gaps.size else "whether the boxes touch is not known"
     )
-    assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
+    assumed = any(size_source_text(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
     return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
 
 
-def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
-    """Return the distances that rules required between the two parties over time, and the finding's own measured values.
-
-    The measured values are None if the rule requires a distance or measures a contact in metres: the gap is always drawn.
-    """
-    rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
-    units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
-    about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
-    if case.finding.is_near_miss:
-        units[None] = about["unit"]  # the courses of near misses have no finding
-    gaps, own = [], None
-    for row in case.result.courses.to_pylist():
-        rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
-        if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
-            continue
-        if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
-            continue
-        title = f"\u201c{rule['title']}\u201d"
-        if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
-            gaps.append({**row, "title": title, "planned": profile(row["profile"])})
-        elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
-            own = {**row, "title": f"{rule['observes'] or title}, {told_unit(unit)}"}
-    return gaps, own if own and any(value is not None for value in own["observed"]) else None
-
-
-def _rules_hash(result: Result) -> str:
+def _rules_sha256(result: Result) -> str:
     """Return the SHA-256 of the lines `ID VERSION` of all rules, in the order of the ids."""
     rows = sorted((rule["rule_id"], rule["rule_version"]) for rule in result.rules.to_pylist())
     return hashlib.sha256("".join(f"{rule} {version}\n" for rule, version in rows).encode()).hexdigest()

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 
-def size_source(trace: Trace, actor_id: str) -> str:
+def size_source_text(trace: Trace, actor_id: str) -> str:
     """Return in words the source of an actor's size; '' if it is the log. A clip keeps the source from its log."""
     rows = trace.tables["quality"].to_pylist()
     mine = [row for row in rows if row["check_id"] == ASSUMED_SIZE_CHECK and row["actor_id"] in {None, actor_id}]

@@ -41,7 +41,7 @@ Evidence = dict[str, dict[str, bytes] | str]
 """Id of a finding -> the files that reproduce its numbers (name -> content), or the reason why there are none."""
 
 
-def rules_of(result: Result, check_request: RunRequest) -> list[Rule]:
+def rules_of_result(result: Result, check_request: RunRequest) -> list[Rule]:
     """Return the rules of a result. Errors: `UsageError` for a rule that is not in the catalogue or was changed since."""
     return rules_of_table(result.rules, check_request.rules_dirs)
 
@@ -59,13 +59,15 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
     return found
 
 
-def check_again(result: Result, check_request: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
-    """Run the check of a result again, and return the new result. `work`: folder for the margins; None: margins are not computed.
+def check_again(
+    result: Result, check_request: RunRequest, margins_folder: Path | None, *, evidence: bool = True
+) -> Result:
+    """Run the check of a result again, and return the new result. `margins_folder`: folder for the margins; None: margins are not computed.
     `evidence`: also gather what reports show.
 
     Errors: `UsageError` for a rule that is not in the catalogue or was changed since, and the errors of a check.
     """
-    rules = rules_of(result, check_request)
+    rules = rules_of_result(result, check_request)
     given = {
         name: getattr(check_request, name) for name in CheckOptions.__dataclass_fields__ if hasattr(check_request, name)
     }
@@ -77,8 +79,8 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
         "strict": result.strict,
         "require": result.required,
         "robustness": check_request.robustness,
-        "out": work,
-        "margins": work is not None,
+        "out": margins_folder,
+        "margins": margins_folder is not None,
         "annotate": False,
         "pictures": False,
         "evidence": evidence,
@@ -86,7 +88,7 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
     return check(CheckOptions(**given), Silent())
 
 
-def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
+def param_values_by_rule(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
     """Return rule -> parameter -> value, for the given rules of a check."""
     mine = list(rules)
     names = {rule.id for rule in mine}
@@ -99,33 +101,33 @@ def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dic
     }
 
 
-def finding_evidence(
+def evidence_of_findings(
     result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
 ) -> Evidence:
     """Return the data that reproduce the numbers of each finding. `check_request` has the paths of the logs. `loaded_rules`: the rules of
     the result, if already loaded."""
-    rules = {rule.id: rule for rule in loaded_rules or rules_of(result, check_request)}
+    rules = {rule.id: rule for rule in loaded_rules or rules_of_result(result, check_request)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
     for (drive_id, ego_id), mine in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
         trace = Path(check_request.traces[drive_id])
         drive, _ = open_drive(trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map)
-        found |= _of_drive(drive, mine, rules, check_request, memory)
+        found |= _evidence_of_drive(drive, mine, rules, check_request, memory)
     return found
 
 
-def _of_drive(
+def _evidence_of_drive(
     drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], check_request: RunRequest, memory: int | None
 ) -> Evidence:
     """Return the evidence of the findings of one ego in one drive."""
     mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
-    params = params_of(mine, check_request)
+    params = param_values_by_rule(mine, check_request)
     found: Evidence = {}
 
     def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
         for rule in mine:
             rows = [row for row in findings if row["rule_id"] == rule.id]
-            found.update(_of_rule(con, rule, params[rule.id], rows))
+            found.update(_evidence_of_rule(con, rule, params[rule.id], rows))
 
     with store.workspace(memory) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
@@ -135,7 +137,7 @@ def _of_drive(
     return found
 
 
-def _of_rule(
+def _evidence_of_rule(
     con: duckdb.DuckDBPyConnection, rule: Rule, params: Mapping[str, object], findings: Sequence[Row]
 ) -> Evidence:
     """Return the evidence of the findings of one rule. The database must still have the rows of the drive."""
@@ -152,18 +154,20 @@ def _of_rule(
             references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
         tables = {
             table: finding_rows.rows_of_ego(con, table, first["drive_id"], first["ego_id"])
-            for table in finding_sql.tables_of(rule)
+            for table in finding_sql.tables_of_condition(rule)
         }
     finally:
         con.execute("DROP VIEW IF EXISTS temp.reference_step")
         drop_tables(con)
     return {
-        row["finding_id"]: finding_rows.evidence(rule, params, row, references.get(row["ref_id"]), tables)
+        row["finding_id"]: finding_rows.reproducing_files_or_reason(
+            rule, params, row, references.get(row["ref_id"]), tables
+        )
         for row in findings
     }
 
 
-def compared(
+def file_differences(
     folder: Path, files: Mapping[str, bytes], packed: Mapping[str, bytes], *, other_libraries: bool
 ) -> tuple[list[Problem], bool]:
     """Return the files that differ from those in the pack, and whether any has other bytes.
@@ -180,12 +184,12 @@ def compared(
         if there != content:
             other_bytes = True
             # the same libraries write the same bytes: any other difference is a change of the pack
-            if not (other_libraries and path.endswith(".parquet") and same_rows(there, content)):
+            if not (other_libraries and path.endswith(".parquet") and has_same_rows(there, content)):
                 wrong.append(Problem("result not reproduced", path))
     return wrong, other_bytes
 
 
-def same_rows(a: bytes, b: bytes) -> bool:
+def has_same_rows(a: bytes, b: bytes) -> bool:
     """Return whether two Parquet files have the same rows and column comments, even if their bytes differ."""
     one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
     return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))

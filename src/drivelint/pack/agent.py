@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
 _IDENTITIES, _IDENTITIES_ANSWER, _SIGN, _SIGN_ANSWER = 11, 12, 13, 14
-_KIND: Final = b"ssh-ed25519"
-_LONGEST: Final = 1 << 18  # OpenSSH's limit for the length of a message
-_PATIENCE_S: Final = 300.0
+_KEY_TYPE: Final = b"ssh-ed25519"
+_LONGEST_MESSAGE_BYTES: Final = 1 << 18  # OpenSSH's limit for the length of a message
+_AGENT_TIMEOUT_S: Final = 300.0
 """Timeout of the agent in seconds: an agent may ask the user to confirm (ssh-add -c)."""
 
 
@@ -34,10 +34,12 @@ class AgentKey:
     def __init__(self, public: Ed25519PublicKey) -> None:
         """Find the key in the agent. Errors: `UsageError` if there is no agent, or the agent does not have the key."""
         self._public = public
-        self._blob = _string(_KIND) + _string(public.public_bytes(Encoding.Raw, PublicFormat.Raw))
-        answer = _ask(bytes([_IDENTITIES]), _IDENTITIES_ANSWER)
+        self._blob = _with_length_prefix(_KEY_TYPE) + _with_length_prefix(
+            public.public_bytes(Encoding.Raw, PublicFormat.Raw)
+        )
+        answer = _ask_agent(bytes([_IDENTITIES]), _IDENTITIES_ANSWER)
         try:
-            blobs = list(_strings(answer[4:]))[::2]  # each key is followed by its comment
+            blobs = list(_strings_in_message(answer[4:]))[::2]  # each key is followed by its comment
         except ValueError as error:
             raise UsageError("--sign: the list of keys from ssh-agent is cut off") from error
         if self._blob not in blobs:
@@ -51,21 +53,21 @@ class AgentKey:
 
     def sign(self, content: bytes) -> bytes:
         """Return the signature of 64 bytes. Errors: `UsageError` if the agent refuses, or its answer is not a signature by this key."""
-        request = bytes([_SIGN]) + _string(self._blob) + _string(content) + struct.pack(">I", 0)
+        request = bytes([_SIGN]) + _with_length_prefix(self._blob) + _with_length_prefix(content) + struct.pack(">I", 0)
         try:
-            (whole,) = _strings(_ask(request, _SIGN_ANSWER))
-            kind, signature = _strings(whole)
+            (whole,) = _strings_in_message(_ask_agent(request, _SIGN_ANSWER))
+            kind, signature = _strings_in_message(whole)
             self._public.verify(signature, content)
         except (ValueError, InvalidSignature) as error:
             raise UsageError("--sign: the answer of ssh-agent is not an Ed25519 signature by this key") from error
-        if kind != _KIND:
+        if kind != _KEY_TYPE:
             raise UsageError(
                 f"--sign: ssh-agent returned a signature of another kind ({kind.decode('ascii', 'replace')})"
             )
         return signature
 
 
-def _ask(request: bytes, answer_type: int) -> bytes:
+def _ask_agent(request: bytes, answer_type: int) -> bytes:
     """Send a message to the agent, and return the answer without its type byte. Errors: `UsageError`."""
     path = os.environ.get("SSH_AUTH_SOCK")
     if not path or not hasattr(socket, "AF_UNIX"):
@@ -74,13 +76,13 @@ def _ask(request: bytes, answer_type: int) -> bytes:
         )
     try:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as agent:
-            agent.settimeout(_PATIENCE_S)
+            agent.settimeout(_AGENT_TIMEOUT_S)
             agent.connect(path)
-            agent.sendall(_string(request))
-            (length,) = struct.unpack(">I", _received(agent, 4))
-            if not 0 < length <= _LONGEST:
+            agent.sendall(_with_length_prefix(request))
+            (length,) = struct.unpack(">I", _receive_bytes(agent, 4))
+            if not 0 < length <= _LONGEST_MESSAGE_BYTES:
                 raise UsageError(f"--sign: {path} does not answer like ssh-agent")
-            answer = _received(agent, length)
+            answer = _receive_bytes(agent, length)
     except OSError as error:
         raise UsageError(f"--sign: ssh-agent at {path} cannot be reached: {error.strerror or error}") from error
     if answer[0] != answer_type:
@@ -88,22 +90,22 @@ def _ask(request: bytes, answer_type: int) -> bytes:
     return answer[1:]
 
 
-def _received(agent: socket.socket, n: int) -> bytes:
+def _receive_bytes(agent: socket.socket, n_bytes: int) -> bytes:
     content = b""
-    while len(content) < n:
-        part = agent.recv(n - len(content))
+    while len(content) < n_bytes:
+        part = agent.recv(n_bytes - len(content))
         if not part:
             raise OSError("it closed the connection before the end of its answer")
         content += part
     return content
 
 
-def _string(content: bytes) -> bytes:
+def _with_length_prefix(content: bytes) -> bytes:
     """Return bytes with their length in front, as in the protocol."""
     return struct.pack(">I", len(content)) + content
 
 
-def _strings(content: bytes) -> Iterator[bytes]:
+def _strings_in_message(content: bytes) -> Iterator[bytes]:
     """Yield the byte strings of a message, without their lengths. Errors: `ValueError` if the message is cut off."""
     while content:
         n = int.from_bytes(content[:4], "big")

@@ -12,11 +12,26 @@ import pyarrow.parquet as pq
 from drivelint import __version__, catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
-from drivelint.incident import sheet_ids
+from drivelint.incident import possible_sheet_ids
 from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
 from drivelint.pack.bag import DATA, Problem
-from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
-from drivelint.pack.statement import ENVELOPE, FILE, altered_files, differences, statement
+from drivelint.pack.contents import (
+    COPIED_RESULT_FILES,
+    EVIDENCE_FILE,
+    FINDING_ENTRY_COLUMNS,
+    FINDINGS_FOLDER,
+    FORMAT_VERSION,
+    RESULT_FOLDER,
+    evidence_values_of_result,
+    packed_summary,
+)
+from drivelint.pack.statement import (
+    ENVELOPE_FILE,
+    STATEMENT_FILE,
+    altered_file_problems,
+    in_toto_statement,
+    statement_problems,
+)
 from drivelint.phrases import plural
 from drivelint.report import summary
 from drivelint.report.outputs import REPORT_FORMATS
@@ -33,13 +48,22 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
+READ_ERRORS: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
 """The errors that reading an untrusted file can raise. A signer can put anything into a pack."""
-_NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "incidents", "findings", "left_out")
-_REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
+_UNDERIVED_EVIDENCE_KEYS: Final = (
+    "evidence",
+    "packed_with",
+    "mapping",
+    "rules_dirs",
+    "inputs",
+    "incidents",
+    "findings",
+    "left_out",
+)
+_REFERENCE_ID_PATTERN: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 
 
-class Stated(NamedTuple):
+class PackContent(NamedTuple):
     """The content of a pack: the result, `evidence.json`, and the one-word result of the statement."""
 
     result: Result
@@ -47,64 +71,66 @@ class Stated(NamedTuple):
     outcome: str
 
 
-def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
+def problems_and_content(folder: Path) -> tuple[list[Problem], PackContent | None]:
     """Return the contradictions in a pack, and the pack's content; None: the content cannot be read."""
-    name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
+    name = ENVELOPE_FILE if (folder / ENVELOPE_FILE).is_file() else STATEMENT_FILE
     try:
-        evidence = evidence_of(folder)
-        result = load_result(folder / RESULT)
-        wrong = _of_evidence(folder, result, evidence) + _of_files(folder, evidence)
-        wrong += _of_reports(folder, result, evidence)
-        due = statement(folder, result, summary_of(folder), evidence)
-        stated = Stated(result, evidence, json.loads(due)["predicate"]["result"])
+        evidence = read_evidence(folder)
+        result = load_result(folder / RESULT_FOLDER)
+        wrong = _problems_of_evidence(folder, result, evidence) + _unnamed_payload_files(folder, evidence)
+        wrong += _differing_reports(folder, result, evidence)
+        due = in_toto_statement(folder, result, packed_summary(folder), evidence)
+        stated = PackContent(result, evidence, json.loads(due)["predicate"]["result"])
         if not (folder / name).is_file():
-            return [Problem("statement missing", FILE)], stated
+            return [Problem("statement missing", STATEMENT_FILE)], stated
         content = (folder / name).read_bytes()
-        said = signature.payload_of(content) if name == ENVELOPE else content
-    except (DriveLintError, *UNREADABLE) as error:
-        return [*_altered(folder), Problem("result not readable", str(error))], None
-    return differences(said, due) + wrong, stated
+        said = signature.payload_of_envelope(content) if name == ENVELOPE_FILE else content
+    except (DriveLintError, *READ_ERRORS) as error:
+        return [*_altered_files(folder), Problem("result not readable", str(error))], None
+    return statement_problems(said, due) + wrong, stated
 
 
-def _altered(folder: Path) -> list[Problem]:
+def _altered_files(folder: Path) -> list[Problem]:
     """Return the files whose hashes are not those in the statement; [] if the statement cannot be read."""
     try:
-        sealed = (folder / ENVELOPE).is_file()
-        content = (folder / (ENVELOPE if sealed else FILE)).read_bytes()
-        return altered_files(signature.payload_of(content) if sealed else content, folder)
-    except (DriveLintError, *UNREADABLE):
+        sealed = (folder / ENVELOPE_FILE).is_file()
+        content = (folder / (ENVELOPE_FILE if sealed else STATEMENT_FILE)).read_bytes()
+        return altered_file_problems(signature.payload_of_envelope(content) if sealed else content, folder)
+    except (DriveLintError, *READ_ERRORS):
         return []
 
 
-def evidence_of(folder: Path) -> dict[str, Any]:
+def read_evidence(folder: Path) -> dict[str, Any]:
     """Return the content of `evidence.json`. Errors: `ValueError` if a key occurs twice, or for another version of the format."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
-            raise ValueError(f"{EVIDENCE} says something twice")
+            raise ValueError(f"{EVIDENCE_FILE} says something twice")
         return found
 
-    told: dict[str, Any] = json.loads((folder / EVIDENCE).read_text("utf-8"), object_pairs_hook=once)
-    if told["evidence"] != FORM:
-        raise ValueError(f"{EVIDENCE} is of form {told['evidence']}, this drivelint reads {FORM}")
+    told: dict[str, Any] = json.loads((folder / EVIDENCE_FILE).read_text("utf-8"), object_pairs_hook=once)
+    if told["evidence"] != FORMAT_VERSION:
+        raise ValueError(f"{EVIDENCE_FILE} is of form {told['evidence']}, this drivelint reads {FORMAT_VERSION}")
     return told
 
 
-def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
+def _problems_of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
     """Return the contradictions between `evidence.json` and the result and rules in the pack."""
-    due = facts(folder, result, run_request.load(folder / RESULT))
-    keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
-    keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
-    keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
-    keys += sheets.invalid_sheets(folder, evidence, sheet_ids(result))
+    due = evidence_values_of_result(folder, result, run_request.load(folder / RESULT_FOLDER))
+    keys = differing_evidence_keys(
+        evidence, due, result.findings.select(FINDING_ENTRY_COLUMNS).to_pylist(), result.rules.to_pylist()
+    )
+    keys += sorted(evidence.keys() - due.keys() - set(_UNDERIVED_EVIDENCE_KEYS))
+    keys += _inputs_with_wrong_paths(json.loads((folder / RESULT_FOLDER / "run.json").read_text("utf-8")), evidence)
+    keys += sheets.invalid_sheets(folder, evidence, possible_sheet_ids(result))
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
-    said, counted = summary_of(folder), json.loads(summary.render(result))
+    said, counted = packed_summary(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
     return wrong + [Problem("summary.json does not match the tables", key) for key in keys]
 
 
-def differing(
+def differing_evidence_keys(
     evidence: dict[str, Any], facts: dict[str, Any], findings: list[dict[str, Any]], rules: Iterable[dict[str, Any]]
 ) -> list[str]:
     """Return the keys of `evidence.json` that differ from these facts, findings, versions of rules, or the paths of the SQL."""
@@ -113,48 +139,54 @@ def differing(
     told = {**evidence, "findings": [{key: row.get(key) for key in said} for row in evidence["findings"]]}
     due["rule versions"] = [rule["rule_version"] for rule in rules]
     told["rule versions"] = [rule["rule_version"] for rule in facts["rules"]]
-    due["sql"] = [_place_of_sql(row, by_drive="key" in said) for row in evidence["findings"]]
+    due["sql"] = [_due_sql_path(row, has_drive_folder="key" in said) for row in evidence["findings"]]
     told["sql"] = [row["sql"] for row in evidence["findings"]]
     return [key for key, value in due.items() if told.get(key) != value]
 
 
-def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
+def _due_sql_path(finding: dict[str, Any], *, has_drive_folder: bool) -> str | None:
     """Return the path where the SQL of a finding must be; None: the pack has a reason instead of the SQL."""
     said = finding["without_sql_because"]
-    place = f"{FINDINGS}/{finding['key']}" if by_drive else FINDINGS
+    place = f"{FINDINGS_FOLDER}/{finding['key']}" if has_drive_folder else FINDINGS_FOLDER
     return None if isinstance(said, str) and said else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
 
 
-def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
+def _inputs_with_wrong_paths(run_json: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
     """Return the names of the inputs of the check whose path in the pack is missing or unexpected in `evidence.json`."""
-    wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
-    if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
+    wrong = [] if isinstance(run_json["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
+    if len(run_json["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")
     inside = evidence["inputs"]
     judged = {drive["drive_id"] for drive in evidence["drives"]}
-    has_map = run["map"] is not None or run["map_dir"] is not None
+    has_map = run_json["map"] is not None or run_json["map_dir"] is not None
     if inside is not None and (inside["traces"].keys() != judged or has_map != (len(inside) > 1)):
         wrong.append("inputs")
     return wrong
 
 
-def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
+def _unnamed_payload_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
     """Return the files of the payload that `evidence.json` does not name."""
-    named_files = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
-    named_files |= set(sheets.sheet_files(evidence))
+    named_files = {
+        EVIDENCE_FILE,
+        *(f"{RESULT_FOLDER}/{name}" for name in COPIED_RESULT_FILES),
+        *(rule["file"] for rule in evidence["rules"]),
+    }
+    named_files |= set(sheets.sheet_paths_in_evidence(evidence))
     inside = evidence["inputs"] or {"traces": {}}
     places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
     places += [inside.get("map"), inside.get("map_dir")]
     kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
-    return unnamed(
+    return unnamed_files(
         folder, evidence, named_files, [place for place in places if place is not None and place.startswith(kept)]
     )
 
 
-def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots: Iterable[str]) -> list[Problem]:
-    """Return the files of the payload that are not in `named_files`, not below `roots`, and not data of a finding."""
+def unnamed_files(
+    folder: Path, evidence: dict[str, Any], named_files: set[str], named_folders: Iterable[str]
+) -> list[Problem]:
+    """Return the files of the payload that are not in `named_files`, not below `named_folders`, and not data of a finding."""
     known = {
-        *roots,
+        *named_folders,
         *(row["sql"].removesuffix(f"/{finding_rows.SQL_FILE}") for row in evidence["findings"] if row["sql"]),
     }
     files = {path.relative_to(folder) for path in (folder / DATA).rglob("*") if path.is_file()}
@@ -162,40 +194,40 @@ def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots
     return [Problem("file that nothing names", name) for name in sorted(set(found) - named_files)]
 
 
-def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
+def _differing_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
     """Return the reports that differ from those that drivelint writes from the tables. Compare only if the same version wrote the pack."""
-    if packed_by(evidence) != __version__:
+    if packing_version(evidence) != __version__:
         return []
     return [
-        Problem("report does not match the tables", f"{RESULT}/{name}")
+        Problem("report does not match the tables", f"{RESULT_FOLDER}/{name}")
         for name, render in REPORT_FORMATS.values()
-        if (folder / RESULT / name).is_file() and (folder / RESULT / name).read_bytes() != render(result)
+        if (folder / RESULT_FOLDER / name).is_file() and (folder / RESULT_FOLDER / name).read_bytes() != render(result)
     ]
 
 
-def packed_by(evidence: dict[str, Any]) -> str:
+def packing_version(evidence: dict[str, Any]) -> str:
     """Return the version of drivelint that wrote a pack."""
     return str(evidence["packed_with"]["drivelint"])
 
 
-def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tuple[list[Problem], str]:
+def check_sql_of_findings(folder: Path, result: Result, check_request: RunRequest) -> tuple[list[Problem], str]:
     """Run the SQL of each finding on the rows in the pack. Return the findings with other numbers, and a phrase about how many were run.
 
     The SQL that runs is generated from the rule; the SQL in the pack must be the same text. Only the log can show whether the rows are
     right.
     """
     try:
-        rules = {rule.id: rule for rule in again.rules_of(result, check_request)}
+        rules = {rule.id: rule for rule in again.rules_of_result(result, check_request)}
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
-    if why := unlike_rules(list(rules.values()), result.rules, check_request):
+    if why := rules_contradiction(list(rules.values()), result.rules, check_request):
         return [Problem("run.json does not match the result", why)], ""
-    rows = {f"{FINDINGS}/{row['finding_id']}": row for row in result.findings.to_pylist()}
-    wrong, n = of_sql(folder, rows, rules, check_request)
+    rows = {f"{FINDINGS_FOLDER}/{row['finding_id']}": row for row in result.findings.to_pylist()}
+    wrong, n = check_sql_in_folders(folder, rows, rules, check_request)
     return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
 
 
-def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) -> str:
+def rules_contradiction(rules: list[Rule], table: pa.Table, check_request: RunRequest) -> str:
     """Return the contradiction between the table `rule` and the requested rules and parameters; '' if there is none."""
     try:
         given = catalogue.parse_params(rules, check_request.params)
@@ -205,26 +237,31 @@ def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) 
     return "" if due.to_pylist() == table.to_pylist() else "rules.parquet has other parameters, profiles or rules"
 
 
-def of_sql(
-    folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], check_request: RunRequest
+def check_sql_in_folders(
+    folder: Path,
+    findings_by_folder: Mapping[str, finding_sql.Row],
+    rules: Mapping[str, Rule],
+    check_request: RunRequest,
 ) -> tuple[list[Problem], int]:
-    """Return the findings whose SQL returns other numbers, and how many findings were run, one per event. `findings`: folder -> finding."""
-    params = again.params_of(rules.values(), check_request)
+    """Return the findings whose SQL returns other numbers, and how many findings were run, one per event."""
+    params = again.param_values_by_rule(rules.values(), check_request)
     wrong, run = [], []
-    for inner, row in findings.items():
+    for inner, row in findings_by_folder.items():
         place = folder / inner
         if not (place / finding_rows.SQL_FILE).is_file():
             continue
         run.append(row)
         rule = rules[row["rule_id"]]
         text = (place / finding_rows.SQL_FILE).read_text("utf-8", "replace")
-        reference = _REFERENCE.search(text)
-        sql = finding_sql.query(rule, params[rule.id], row, int(reference[1]) if reference else None)
-        tables = finding_sql.tables_of(rule)
+        reference = _REFERENCE_ID_PATTERN.search(text)
+        sql = finding_sql.select_of_finding(rule, params[rule.id], row, int(reference[1]) if reference else None)
+        tables = finding_sql.tables_of_condition(rule)
         try:
             rows = {table: pq.read_table(place / f"{table}.parquet") for table in tables}
-            same = finding_sql.file_text(rule, row, sql, tables) == text and finding_rows.gives(sql, row, rows)
-        except UNREADABLE:
+            same = finding_sql.finding_sql_text(rule, row, sql, tables) == text and finding_rows.has_finding_numbers(
+                sql, row, rows
+            )
+        except READ_ERRORS:
             same = False
         if not same:
             wrong.append(Problem("finding does not give its numbers", inner))

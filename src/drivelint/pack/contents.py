@@ -26,56 +26,56 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-EVIDENCE: Final = "data/evidence.json"
-RESULT: Final = "data/result"
-FINDINGS: Final = "data/findings"
-FORM: Final = 1
+EVIDENCE_FILE: Final = "data/evidence.json"
+RESULT_FOLDER: Final = "data/result"
+FINDINGS_FOLDER: Final = "data/findings"
+FORMAT_VERSION: Final = 1
 """Version of the format, the value of `evidence` in `evidence.json`: raised when a key is removed or changes its meaning."""
-OUTPUTS: Final = frozenset(name for name in RESULT_FILE_GLOBS if not ("*" in name or "/" in name)) - {
+COPIED_RESULT_FILES: Final = frozenset(name for name in RESULT_FILE_GLOBS if not ("*" in name or "/" in name)) - {
     "drivelint.duckdb",
     MANIFEST,
 }
 """The files of a result that are copied into a pack. The manifest is left out, because the bag has its own."""
-SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
+FINDING_ENTRY_COLUMNS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
 _DRIVE_COLUMNS: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
 _LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
 """Libraries that affect verdicts or the bytes of files."""
 
 
-def summary_of(folder: Path) -> dict[str, Any]:
+def packed_summary(folder: Path) -> dict[str, Any]:
     """Return the content of `summary.json` in a pack."""
-    told: dict[str, Any] = json.loads((folder / RESULT / "summary.json").read_text("utf-8"))
+    told: dict[str, Any] = json.loads((folder / RESULT_FOLDER / "summary.json").read_text("utf-8"))
     return told
 
 
-def facts(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
+def evidence_values_of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
     """Return the values of `evidence.json` that follow from the result and the rules in the pack `folder`."""
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
-        "tool": summary_of(folder)["tool"],
+        "tool": packed_summary(folder)["tool"],
         "drives": [{key: drive[key] for key in _DRIVE_COLUMNS} for drive in judged_drives(drives)],
         "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
-        "options": _options(check_request, result),
-        **facts_of_rules(folder, rules),
-        "outputs": hashes(folder, RESULT),
+        "options": _options_of_check(check_request, result),
+        **evidence_values_of_rules(folder, rules),
+        "outputs": sha256_by_path(folder, RESULT_FOLDER),
     }
 
 
-def facts_of_rules(folder: Path, rules: Sequence[Row]) -> dict[str, Any]:
+def evidence_values_of_rules(folder: Path, rules: Sequence[Row]) -> dict[str, Any]:
     """Return the files and the parameters of the rules of a result; `rules`: its table `rule`."""
     return {
-        "rules": [_rule(folder, rule["rule_id"]) for rule in rules],
+        "rules": [_rule_entry(folder, rule["rule_id"]) for rule in rules],
         "parameters": {f"{rule['rule_id']}.{each['name']}": each["value"] for rule in rules for each in rule["params"]},
     }
 
 
-def hashes(folder: Path, inner: str) -> dict[str, str]:
+def sha256_by_path(folder: Path, subfolder: str) -> dict[str, str]:
     """Return file -> hash for all files below a folder of the pack."""
-    files = sorted(path for path in (folder / inner).rglob("*") if path.is_file())
+    files = sorted(path for path in (folder / subfolder).rglob("*") if path.is_file())
     return {path.relative_to(folder).as_posix(): sha256_of(path) for path in files}
 
 
-def _rule(folder: Path, rule_id: str) -> dict[str, str]:
+def _rule_entry(folder: Path, rule_id: str) -> dict[str, str]:
     """Return the entry of a rule: its file in the pack, the file's hash, and the version, which is the start of the hash."""
     pack, _, name = rule_id.partition(".")
     file = f"data/rules/{pack}/{name}.sql"
@@ -83,7 +83,7 @@ def _rule(folder: Path, rule_id: str) -> dict[str, str]:
     return {"rule_id": rule_id, "rule_version": digest[:16], "sha256": digest, "file": file}
 
 
-def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
+def _options_of_check(check_request: RunRequest, result: Result) -> dict[str, Any]:
     """Return the options of the check, without the paths of logs, maps, mapping and rules."""
     plain = json.loads(run_request.render(check_request, Path()))
     kept = {each.name for each in fields(DriveInput)} - {"map", "map_dir", "mapping"}
@@ -100,15 +100,15 @@ def library_versions() -> dict[str, str]:
     }
 
 
-def inside(folder: Path, path: str) -> Path:
+def path_inside_pack(folder: Path, path: str) -> Path:
     """Return the path of a file that `evidence.json` names. Errors: `ValueError` for a path outside the pack."""
     found = folder / path
     if not found.resolve().is_relative_to(folder.resolve()):
-        raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
+        raise ValueError(f"{EVIDENCE_FILE} leads out of the pack: {path}")
     return found
 
 
-def told_findings(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
+def findings_with_sql_text(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
     """Return in words how many findings of a check have SQL, one per event, as its reports count them.
 
     `rows`: the table `finding`; `entries`: the entries of `findings`.
@@ -121,16 +121,18 @@ def told_findings(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> 
     return f"{said} ({more})" if more else said
 
 
-def findings(rows: Iterable[Row], evidence: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
-    """Return the entries of findings: their numbers, and the path of the SQL or the reason why there is none. `place`: folder of the
-    findings in the pack."""
+def finding_entries(
+    rows: Iterable[Row], evidence: Evidence, findings_folder: str = FINDINGS_FOLDER
+) -> list[dict[str, Any]]:
+    """Return the entries of findings: their numbers, and the path of the SQL or the reason why there is none. `findings_folder`: folder
+    of the findings in the pack."""
     told = []
     for row in rows:
         files = evidence[row["finding_id"]]
         has_files = isinstance(files, dict)
         told.append({
-            **{key: row[key] for key in SAID_OF_FINDINGS},
-            "sql": f"{place}/{row['finding_id']}/finding.sql" if has_files else None,
+            **{key: row[key] for key in FINDING_ENTRY_COLUMNS},
+            "sql": f"{findings_folder}/{row['finding_id']}/finding.sql" if has_files else None,
             "without_sql_because": None if has_files else files,
         })  # fmt: skip
     return told

@@ -22,8 +22,13 @@ if TYPE_CHECKING:
 
 PADDING_NS: Final = 10_000_000_000
 """Time before and after a finding whose rows are tried before the whole drive is taken."""
-_SPANS: Final = (("t_ns", "t_ns"), ("t_start_ns", "t_end_ns"), ("t_from_ns", "t_to_ns"), ("t_first_ns", "t_last_ns"))
-_OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
+_TIME_COLUMN_PAIRS: Final = (
+    ("t_ns", "t_ns"),
+    ("t_start_ns", "t_end_ns"),
+    ("t_from_ns", "t_to_ns"),
+    ("t_first_ns", "t_last_ns"),
+)
+_OBJECT_COLUMNS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
 SQL_FILE: Final = "finding.sql"
 
 
@@ -43,37 +48,37 @@ def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_i
     return con.execute(sql, values).to_arrow_table()
 
 
-def evidence(
+def reproducing_files_or_reason(
     rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None, tables: Mapping[str, pa.Table]
 ) -> dict[str, bytes] | str:
     """Return file name -> content of the files that reproduce the numbers of a finding, or why there are none.
 
     `tables`: name of a table that the rule's condition reads -> all its rows about the ego.
     """
-    sql = finding_sql.query(rule, params, finding, ref_id)
-    if not finding_sql.is_read_alike(sql):
+    sql = finding_sql.select_of_finding(rule, params, finding, ref_id)
+    if not finding_sql.is_split_alike_by_shell(sql):
         return "DuckDB's shell would read it otherwise: the rule has a comment in /* */, or a text in E'' or $$"
     with duckdb.connect(config={"threads": "1"}) as con:
         store.lock_down(con)  # the rule, or the pack that is verified, may be untrusted
         try:
-            con.execute(";".join(finding_sql.macros(sql)))
+            con.execute(";".join(finding_sql.called_macro_definitions(sql)))
             least_rows = _fewest_sufficient_rows(con, sql, finding, tables)
         except duckdb.Error as error:
             return f"DuckDB alone cannot run it: {str(error).splitlines()[0]}"
     if least_rows is None:
         return "the rule's condition alone does not give its numbers: nobody was there, or a step is missing"
-    files = {f"{table}.parquet": _parquet(table, rows) for table, rows in least_rows.items()}
-    return {SQL_FILE: finding_sql.file_text(rule, finding, sql, least_rows).encode(), **files}
+    files = {f"{table}.parquet": _parquet_bytes(table, rows) for table, rows in least_rows.items()}
+    return {SQL_FILE: finding_sql.finding_sql_text(rule, finding, sql, least_rows).encode(), **files}
 
 
-def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
+def has_finding_numbers(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
     """Return whether a DuckDB without drivelint's tables computes the numbers of a finding from these rows."""
     with duckdb.connect(config={"threads": "1"}) as con:
         try:
-            con.execute(";".join(finding_sql.macros(sql)))
+            con.execute(";".join(finding_sql.called_macro_definitions(sql)))
             for table, rows in tables.items():
                 con.register(table, rows)
-            return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
+            return _has_rows_finding_numbers(con.execute(sql).to_arrow_table().to_pylist(), finding)
         except duckdb.Error:
             return False
 
@@ -82,12 +87,12 @@ def _fewest_sufficient_rows(
     con: duckdb.DuckDBPyConnection, sql: str, finding: Row, tables: Mapping[str, pa.Table]
 ) -> dict[str, pa.Table] | None:
     """Return the fewest tried rows of each table that give the finding's numbers; None: even all rows give other numbers."""
-    choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
+    choices = {table: _row_choices(con, finding, rows) for table, rows in tables.items()}
 
     def are_sufficient(rows_by_table: Mapping[str, pa.Table]) -> bool:
         for table, rows in rows_by_table.items():
             con.register(table, rows)
-        return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
+        return _has_rows_finding_numbers(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
     least = {table: each[0] for table, each in choices.items()}
     if are_sufficient(least):
@@ -96,16 +101,16 @@ def _fewest_sufficient_rows(
     if not are_sufficient(chosen):
         return None
     for table, each in choices.items():
-        chosen[table] = _first(each, lambda rows, table=table: are_sufficient({**chosen, table: rows}))  # type: ignore[misc]
+        chosen[table] = _first_sufficient(each, lambda rows, table=table: are_sufficient({**chosen, table: rows}))  # type: ignore[misc]
     return chosen
 
 
-def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa.Table:
+def _first_sufficient(choices: Sequence[pa.Table], is_sufficient: Callable[[pa.Table], bool]) -> pa.Table:
     """Return the first choice of rows that gives the numbers. The last choice is known to give them."""
-    return next((rows for rows in choices[:-1] if gives(rows)), choices[-1])
+    return next((rows for rows in choices[:-1] if is_sufficient(rows)), choices[-1])
 
 
-def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
+def _has_rows_finding_numbers(rows: list[dict[str, Any]], finding: Row) -> bool:
     return (
         len(rows) == 1
         and rows[0]["holds"] is False
@@ -113,11 +118,11 @@ def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
     )
 
 
-def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
+def _row_choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
     """Return choices of a table's rows, from few to all: at the worst step or around the finding, about the two parties or all actors."""
     columns = rows.column_names
     step, around = (
-        _at_time(columns, *times)
+        _time_condition_sql(columns, *times)
         for times in (
             (finding["t_worst_ns"], finding["t_worst_ns"]),
             (finding["t_start_ns"] - PADDING_NS, finding["t_end_ns"] + PADDING_NS),
@@ -126,7 +131,9 @@ def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> li
     parties = ", ".join(
         finding_sql.text_literal(finding[key]) for key in ("ego_id", "object_id") if finding[key] is not None
     )
-    named = [f"{name} IN ({parties})" for name in _OBJECTS if name in columns and finding["object_id"] is not None]
+    named = [
+        f"{name} IN ({parties})" for name in _OBJECT_COLUMNS if name in columns and finding["object_id"] is not None
+    ]
     ours = " OR ".join(named) or None
     profile = (
         f"profile = {finding_sql.text_literal(finding['profile'])}"
@@ -143,15 +150,15 @@ def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> li
     return [*found, rows]
 
 
-def _at_time(columns: Sequence[str], start_ns: int, end_ns: int) -> str | None:
-    for first, last in _SPANS:
+def _time_condition_sql(columns: Sequence[str], start_ns: int, end_ns: int) -> str | None:
+    for first, last in _TIME_COLUMN_PAIRS:
         if first in columns and last in columns:
             return f"{first} <= {end_ns} AND coalesce({last}, {first}) >= {start_ns}"
     return None
 
 
-def _parquet(table: str, rows: pa.Table) -> bytes:
-    comments = store.column_comments().get(table, {})
+def _parquet_bytes(table_name: str, rows: pa.Table) -> bytes:
+    comments = store.column_comments().get(table_name, {})
     described = rows.schema.remove_metadata()
     for i, field in enumerate(described):
         metadata = {"comment": comments[field.name]} if field.name in comments else None

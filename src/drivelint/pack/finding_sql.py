@@ -21,23 +21,25 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-_CALL: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
-_MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
-_COMMENT: Final = re.compile(r"--.*")
-_SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
+_CALL_PATTERN: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
+_MACRO_PATTERN: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
+_COMMENT_PATTERN: Final = re.compile(r"--.*")
+_SPATIAL_CALL_PATTERN: Final = re.compile(r"\bST_\w+\s*\(")
 COMPARED_COLUMNS: Final = ("observed", "required", "margin")
 """The columns that the SQL of a finding must reproduce."""
 
 
-def tables_of(rule: Rule) -> list[str]:
+def tables_of_condition(rule: Rule) -> list[str]:
     """Return the tables that the condition of a rule reads, sorted."""
     where = f"{rule.path}: @condition"
     return sorted(syntax.tables_read(syntax.parse_select(rule.sections["condition"], where)))
 
 
-def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
+def select_of_finding(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
     """Return the SELECT that computes a finding's numbers at its worst step. `ref_id`: the condition's number of the reference point."""
-    with_values = syntax.with_values(condition_ctes_sql(rule), {name: literal(value) for name, value in params.items()})
+    with_values = syntax.with_values(
+        condition_ctes_sql(rule), {name: param_literal(value) for name, value in params.items()}
+    )
     at = [f"t_ns = {finding['t_worst_ns']}"]
     if rule.per_object and finding["object_id"] is not None:
         at.append(f"object_id = {text_literal(finding['object_id'])}")
@@ -53,7 +55,7 @@ def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | 
     )
 
 
-def literal(value: object) -> str:
+def param_literal(value: object) -> str:
     """Return a parameter as an SQL literal of the same type. A plain 0.5 would be a DECIMAL, which divides differently."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -71,20 +73,20 @@ def text_literal(text: str) -> str:
     return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
 
 
-def is_read_alike(sql: str) -> bool:
+def is_split_alike_by_shell(sql: str) -> bool:
     """Return whether DuckDB's shell ends a statement where its parser does. If not, the shell would run text as an unchecked statement."""
     content = sql.encode()
     kinds = (content[at : at + 1] for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.string_const)
     return "/*" not in sql and all(first == b"'" for first in kinds)
 
 
-def macros(sql: str) -> list[str]:
+def called_macro_definitions(sql: str) -> list[str]:
     """Return the macros that a statement calls directly or indirectly, in the order of their definitions."""
-    known = _macros()
+    known = _macro_definitions_by_name()
     needed: set[str] = set()
     todo = [sql]
     while todo:
-        called = {name.lower() for name in _CALL.findall(_COMMENT.sub("", todo.pop()))}
+        called = {name.lower() for name in _CALL_PATTERN.findall(_COMMENT_PATTERN.sub("", todo.pop()))}
         new = (called & known.keys()) - needed
         needed |= new
         todo += [known[name] for name in new]
@@ -92,22 +94,22 @@ def macros(sql: str) -> list[str]:
 
 
 @cache
-def _macros() -> dict[str, str]:
+def _macro_definitions_by_name() -> dict[str, str]:
     """Return name -> definition of the macros for rules and for judging."""
     both = f"{macro_definitions()}\n{statement_texts('judging')['macros']}"
     found = {}
     for each in syntax.parser().extract_statements(both):
         text = "\n".join(line for line in each.query.strip().splitlines() if line.strip() and not line.startswith("--"))
-        if match := _MACRO.search(text):
+        if match := _MACRO_PATTERN.search(text):
             found[match[1].lower()] = text.rstrip().rstrip(";")
     return found
 
 
-def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
+def finding_sql_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     """Return the text of `finding.sql`. Run in its folder, it prints the finding's numbers."""
-    called = macros(sql)
-    spatial = any(_SPATIAL.search(text) for text in (sql, *called))
-    numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED_COLUMNS)
+    called = called_macro_definitions(sql)
+    spatial = any(_SPATIAL_CALL_PATTERN.search(text) for text in (sql, *called))
+    numbers = ", ".join(f"{name} {_number_literal(finding[name])}" for name in COMPARED_COLUMNS)
     lines = [
         f"-- Finding {finding['finding_id']} of the rule {rule.id}: {terminal_safe_line(rule.title)}",
         f"-- {terminal_safe_line(rule.clause)}",
@@ -122,5 +124,5 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     return "\n".join([*lines, f"{sql};", ""])
 
 
-def _sql_literal(value: float | None) -> str:
+def _number_literal(value: float | None) -> str:
     return "NULL" if value is None else repr(value)

@@ -22,13 +22,15 @@ def judged_drives(drives: Sequence[Row]) -> list[Row]:
     return [drive for drive in drives if drive["status"] == "judged"]
 
 
-def located(check_request: RunRequest, drives: Sequence[Row], traces: Sequence[Path], map_: Path | None) -> RunRequest:
+def request_with_present_paths(
+    check_request: RunRequest, drives: Sequence[Row], log_paths: Sequence[Path], map_: Path | None
+) -> RunRequest:
     """Return a request with the present paths of its logs and map, after comparing each with its hash.
 
-    `traces`, `map_`: present paths of files that were moved. Errors: `UsageError` for a log or map that is missing or has another hash.
+    `log_paths`, `map_`: present paths of files that were moved. Errors: `UsageError` for a log or map that is missing or has another hash.
     """
-    given = {identify(path).sha256: path for path in traces if path.exists()}
-    if gone := [path for path in traces if not path.exists()]:
+    given = {identify(path).sha256: path for path in log_paths if path.exists()}
+    if gone := [path for path in log_paths if not path.exists()]:
         raise UsageError(f"--trace {gone[0]}: is not there")
     wanted = {drive["sha256"] for drive in judged_drives(drives)}
     if other := sorted(str(path) for digest, path in given.items() if digest not in wanted):
@@ -44,11 +46,11 @@ def located(check_request: RunRequest, drives: Sequence[Row], traces: Sequence[P
                 f"{path} is another log than the one that was judged ({name}): name the right one with --trace"
             )
         found[name] = str(path)
-    map_ = _map(check_request, drives, map_)
+    map_ = _present_map_path(check_request, drives, map_)
     return replace(check_request, traces=found, map=map_, map_dir=check_request.map_dir if map_ is None else None)
 
 
-def _map(check_request: RunRequest, drives: Sequence[Row], map_: Path | None) -> Path | None:
+def _present_map_path(check_request: RunRequest, drives: Sequence[Row], map_: Path | None) -> Path | None:
     path = map_ or check_request.map
     if path is None:
         if check_request.map_dir is not None and not check_request.map_dir.is_dir():

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from drivelint.pack.bag import Problem
 
-MOST_FINDINGS: Final = 100
+DEFAULT_PACKED_FINDINGS: Final = 100
 """Default number of findings of an audit whose rows are in its pack."""
 
 
@@ -31,10 +31,10 @@ class PackRequest:
     date: str | None = None
     timestamp: Path | None = None
     overwrite: bool = False
-    findings: int | None = MOST_FINDINGS
+    findings: int | None = DEFAULT_PACKED_FINDINGS
 
 
-class PackFunctions(NamedTuple):
+class PackContentFunctions(NamedTuple):
     """The two functions that make a pack. `payload` writes the payload into a folder and returns the content of `evidence.json`.
 
     `statement` returns the bytes of the statement.

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PAYLOAD_TYPE: Final = "application/vnd.in-toto+json"
-_OPENSSH: Final = b"-----BEGIN OPENSSH PRIVATE KEY-----"
-_LINE: Final = (b"ssh-", b"ecdsa-", b"sk-")
-_PUBLIC: Final = (*_LINE, b"-----BEGIN PUBLIC KEY-----")
+_OPENSSH_PRIVATE_START: Final = b"-----BEGIN OPENSSH PRIVATE KEY-----"
+_OPENSSH_PUBLIC_STARTS: Final = (b"ssh-", b"ecdsa-", b"sk-")
+_PUBLIC_KEY_STARTS: Final = (*_OPENSSH_PUBLIC_STARTS, b"-----BEGIN PUBLIC KEY-----")
 
 
 class EnvelopeError(Exception):
@@ -40,13 +40,17 @@ class SigningKey(Protocol):
 
 def signing_key(path: Path) -> SigningKey:
     """Return the private key in a file; if the file has a public key, return the matching key in ssh-agent. Errors: `UsageError`."""
-    return AgentKey(public_key(path)) if _read(path).startswith(_PUBLIC) else private_key(path)
+    return AgentKey(public_key(path)) if _read_key_file(path).startswith(_PUBLIC_KEY_STARTS) else private_key(path)
 
 
 def private_key(path: Path) -> Ed25519PrivateKey:
     """Return the private key in a PEM file (PKCS 8 or OpenSSH format). Errors: `UsageError`."""
-    content = _read(path)
-    load = serialization.load_ssh_private_key if content.startswith(_OPENSSH) else serialization.load_pem_private_key
+    content = _read_key_file(path)
+    load = (
+        serialization.load_ssh_private_key
+        if content.startswith(_OPENSSH_PRIVATE_START)
+        else serialization.load_pem_private_key
+    )
     try:
         key = load(content, password=None)
     except TypeError as error:
@@ -60,8 +64,12 @@ def private_key(path: Path) -> Ed25519PrivateKey:
 
 def public_key(path: Path) -> Ed25519PublicKey:
     """Return the public key in a file, in PEM or as a line in OpenSSH format. Errors: `UsageError`."""
-    content = _read(path)
-    load = serialization.load_ssh_public_key if content.startswith(_LINE) else serialization.load_pem_public_key
+    content = _read_key_file(path)
+    load = (
+        serialization.load_ssh_public_key
+        if content.startswith(_OPENSSH_PUBLIC_STARTS)
+        else serialization.load_pem_public_key
+    )
     try:
         key = load(content)
     except (ValueError, UnsupportedAlgorithm) as error:
@@ -71,14 +79,14 @@ def public_key(path: Path) -> Ed25519PublicKey:
     return key
 
 
-def _read(path: Path) -> bytes:
+def _read_key_file(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror or error}") from error
 
 
-def public_pem(key: Ed25519PublicKey) -> bytes:
+def public_key_pem(key: Ed25519PublicKey) -> bytes:
     """Return a public key as PEM."""
     return key.public_bytes(serialization.Encoding.PEM, serialization.PublicFormat.SubjectPublicKeyInfo)
 
@@ -89,9 +97,9 @@ def key_id(key: Ed25519PublicKey) -> str:
     return hashlib.sha256(der).hexdigest()
 
 
-def envelope(payload: bytes, key: SigningKey) -> bytes:
+def signed_envelope(payload: bytes, key: SigningKey) -> bytes:
     """Return the DSSE envelope of a signed statement. The bytes are always the same, because Ed25519 is deterministic."""
-    return _envelope_json(payload, key.sign(_signed_bytes(PAYLOAD_TYPE, payload)), key.public_key())
+    return _envelope_json(payload, key.sign(_bytes_to_sign(PAYLOAD_TYPE, payload)), key.public_key())
 
 
 def _envelope_json(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
@@ -103,32 +111,32 @@ def _envelope_json(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> b
     return (json.dumps(content, indent=2) + "\n").encode()
 
 
-def payload_of(content: bytes) -> bytes:
+def payload_of_envelope(envelope_bytes: bytes) -> bytes:
     """Return the payload of an envelope without checking its signature. Errors: `EnvelopeError`."""
-    return _parse_envelope(content)[1]
+    return _parse_envelope(envelope_bytes)[1]
 
 
-def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
+def is_signed_by(envelope_bytes: bytes, key: Ed25519PublicKey) -> bool:
     """Return whether an envelope has a valid signature by a key. Errors: `EnvelopeError`."""
-    kind, payload, signatures = _parse_envelope(content)
+    kind, payload, signatures = _parse_envelope(envelope_bytes)
     for signature in signatures:
         try:
-            key.verify(signature, _signed_bytes(kind, payload))
+            key.verify(signature, _bytes_to_sign(kind, payload))
         except InvalidSignature:
             continue
         return kind == PAYLOAD_TYPE
     return False
 
 
-def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Return whether a signed envelope has exactly the text that `envelope` writes: the signature covers only the payload."""
-    _, payload, signatures = _parse_envelope(content)
-    return len(signatures) == 1 and content == _envelope_json(payload, signatures[0], key)
+def is_canonical_envelope(envelope_bytes: bytes, key: Ed25519PublicKey) -> bool:
+    """Return whether a signed envelope has exactly the text that `signed_envelope` writes: the signature covers only the payload."""
+    _, payload, signatures = _parse_envelope(envelope_bytes)
+    return len(signatures) == 1 and envelope_bytes == _envelope_json(payload, signatures[0], key)
 
 
-def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
+def _parse_envelope(envelope_bytes: bytes) -> tuple[str, bytes, list[bytes]]:
     try:
-        envelope = json.loads(content)
+        envelope = json.loads(envelope_bytes)
         payload = base64.b64decode(envelope["payload"], validate=True)
         signatures = [base64.b64decode(each["sig"], validate=True) for each in envelope["signatures"]]
         return str(envelope["payloadType"]), payload, signatures
@@ -136,6 +144,6 @@ def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
         raise EnvelopeError(str(error)) from error
 
 
-def _signed_bytes(kind: str, payload: bytes) -> bytes:
+def _bytes_to_sign(kind: str, payload: bytes) -> bytes:
     """Return the bytes that DSSE signs: the type and the payload with their lengths, so that the two cannot be confused."""
     return b"DSSEv1 %d %s %d %s" % (len(kind.encode()), kind.encode(), len(payload), payload)

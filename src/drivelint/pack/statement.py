@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-FILE: Final = "statement.json"
-ENVELOPE: Final = "statement.dsse.json"
-TYPE: Final = "https://in-toto.io/Statement/v1"
-PREDICATE: Final = "https://in-toto.io/attestation/test-result/v0.1"
-SEALED: Final = (bag.DECLARATION, bag.INFO, bag.MANIFEST)
+STATEMENT_FILE: Final = "statement.json"
+ENVELOPE_FILE: Final = "statement.dsse.json"
+STATEMENT_TYPE: Final = "https://in-toto.io/Statement/v1"
+PREDICATE_TYPE: Final = "https://in-toto.io/attestation/test-result/v0.1"
+FILES_IN_STATEMENT: Final = (bag.DECLARATION, bag.INFO, bag.MANIFEST)
 """The tag files whose hashes a statement contains. The hash of the manifest covers every file of the payload."""
 
 
-def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence: Mapping[str, Any]) -> bytes:
+def in_toto_statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about the result whose tables and manifest are in the pack `folder`."""
     drives = judged_drives(result.drives.to_pylist())
-    tests = _tests(result.verdicts.to_pylist())
+    tests = _tests_by_outcome(result.verdicts.to_pylist())
     maps = sorted({(drive["map_name"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
     content = {
-        "_type": TYPE,
+        "_type": STATEMENT_TYPE,
         "subject": [resource_descriptor(drive["file_name"], drive["sha256"]) for drive in drives],
-        "predicateType": PREDICATE,
+        "predicateType": PREDICATE_TYPE,
         "predicate": {
             "result": result_word(tests, is_clean=summary["exit"]["code"] == ExitCode.OK),
             "configuration": [
@@ -56,13 +56,13 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
             "failedTests": tests["fail"],
             "drivelint_undecidedTests": tests["unknown"],
             "drivelint_exit": summary["exit"],
-            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED],
+            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in FILES_IN_STATEMENT],
         },
     }
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
 
 
-def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
+def statement_problems(statement: bytes, due: bytes) -> list[bag.Problem]:
     """Return the differences between a statement and `due`, the statement that follows from the pack's content."""
     try:
         a, b = json.loads(statement), json.loads(due)
@@ -70,13 +70,13 @@ def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
         found = [key for left, right, keys in parts for key in keys or right if left.get(key) != right[key]]
         logs = a["subject"] != b["subject"]
     except (ValueError, KeyError, TypeError, AttributeError):
-        return [bag.Problem("statement not readable", ENVELOPE)]
+        return [bag.Problem("statement not readable", ENVELOPE_FILE)]
     problems = [bag.Problem("statement about another log", "subject")] if logs else []
     for key in found:
         if key == "drivelint_pack":
             problems += [
-                bag.Problem(bag.OTHER_BYTES, name)
-                for name in _other_files(a["predicate"].get(key), b["predicate"][key])
+                bag.Problem(bag.CHANGED_SINCE_STATEMENT, name)
+                for name in _files_with_other_hash(a["predicate"].get(key), b["predicate"][key])
             ]
             continue
         kinds = {"configuration": "statement about another map, rule or parameter"}
@@ -86,17 +86,21 @@ def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
     return problems
 
 
-def altered_files(statement: bytes, folder: Path) -> list[bag.Problem]:
+def altered_file_problems(statement: bytes, folder: Path) -> list[bag.Problem]:
     """Return the files of a pack whose hashes are not those in its statement; the result in the pack may be unreadable."""
     try:
         listed = json.loads(statement)["predicate"]["drivelint_pack"]
     except (ValueError, KeyError, TypeError):
         return []
-    there = [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED if (folder / name).is_file()]
-    return [bag.Problem(bag.OTHER_BYTES, file["name"]) for file in there if file not in listed]
+    there = [
+        resource_descriptor(name, bag.sha256_of(folder / name))
+        for name in FILES_IN_STATEMENT
+        if (folder / name).is_file()
+    ]
+    return [bag.Problem(bag.CHANGED_SINCE_STATEMENT, file["name"]) for file in there if file not in listed]
 
 
-def _other_files(listed: Any, due: list[dict[str, Any]]) -> list[str]:
+def _files_with_other_hash(listed: Any, due: list[dict[str, Any]]) -> list[str]:
     """Return the names of the files in `due` that the statement does not list with this hash; all if it lists more, or no files."""
     wrong = [file["name"] for file in due if not isinstance(listed, list) or file not in listed]
     return wrong or [file["name"] for file in due]
@@ -107,7 +111,7 @@ def resource_descriptor(name: str, digest: str) -> dict[str, Any]:
     return {"name": name, "digest": {"sha256": digest}}
 
 
-def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
+def _tests_by_outcome(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return outcome (pass, near_miss, fail, unknown) -> tests. The worst verdict of a test counts; a rule that did not apply is not a
     test."""
     order = ("fail", "unknown", "near_miss", "pass")

@@ -12,14 +12,14 @@ from cryptography import x509
 
 from drivelint.errors import UsageError
 from drivelint.pack.bag import Problem
-from drivelint.pack.statement import ENVELOPE
+from drivelint.pack.statement import ENVELOPE_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-FILE: Final = f"{ENVELOPE}.tsr"
-_HASHES: Final = {
+TIMESTAMP_FILE: Final = f"{ENVELOPE_FILE}.tsr"
+_HASH_BY_ALGORITHM_ID: Final = {
     "2.16.840.1.101.3.4.2.1": hashlib.sha256,
     "2.16.840.1.101.3.4.2.2": hashlib.sha384,
     "2.16.840.1.101.3.4.2.3": hashlib.sha512,
@@ -27,7 +27,7 @@ _HASHES: Final = {
 """Object identifier of an algorithm -> hash function. Algorithms with known collisions are not accepted."""
 
 
-class StampCheck(NamedTuple):
+class StampCheckResult(NamedTuple):
     """The result of checking a time stamp: its problems, a phrase about its time and authority, and notes on what was not checked."""
 
     problems: list[Problem]
@@ -35,62 +35,66 @@ class StampCheck(NamedTuple):
     notes: list[str] = []  # noqa: RUF012 - never modified
 
 
-def read(path: Path, envelope: bytes) -> bytes:
+def read_response(path: Path, envelope: bytes) -> bytes:
     """Return the time stamp response in a file. Errors: `UsageError` if the file is not a response, or not for this envelope."""
     try:
         content = path.read_bytes()
-        found = look(content, envelope, None)
+        found = check_response(content, envelope, None)
     except OSError as error:
         raise UsageError(f"--timestamp {path}: cannot be read: {error.strerror or error}") from error
     except ModuleNotFoundError as error:
         raise UsageError(_missing_package_text("--timestamp")) from error
     if found.problems:
         raise UsageError(
-            f"--timestamp {path}: {found.problems[0].kind}: pack without it, and let it be made of {ENVELOPE} in that pack"
+            f"--timestamp {path}: {found.problems[0].kind}: pack without it, and let it be made of {ENVELOPE_FILE} in that pack"
         )
     return content
 
 
-def of_pack(folder: Path, roots: Path | None) -> StampCheck:
-    """Check the time stamp of a pack. `roots`: certificates (PEM) of trusted authorities; None: no authority is required.
+def check_pack_timestamp(folder: Path, roots_file: Path | None) -> StampCheckResult:
+    """Check the time stamp of a pack. `roots_file`: certificates (PEM) of trusted authorities; None: no authority is required.
 
     Errors: `UsageError` for certificates that cannot be read, or if certificates are given and rfc3161-client is not installed.
     """
-    if not (folder / FILE).is_file() or not (folder / ENVELOPE).is_file():
-        return StampCheck([] if roots is None else [Problem("no time stamp", FILE)])
+    if not (folder / TIMESTAMP_FILE).is_file() or not (folder / ENVELOPE_FILE).is_file():
+        return StampCheckResult([] if roots_file is None else [Problem("no time stamp", TIMESTAMP_FILE)])
     try:
-        return look((folder / FILE).read_bytes(), (folder / ENVELOPE).read_bytes(), roots)
+        return check_response((folder / TIMESTAMP_FILE).read_bytes(), (folder / ENVELOPE_FILE).read_bytes(), roots_file)
     except ModuleNotFoundError as error:
-        if roots is not None:
+        if roots_file is not None:
             raise UsageError(_missing_package_text("--timestamp-root")) from error
-        return StampCheck([], "with a time stamp that was not examined", [_missing_package_text("its time stamp")])
+        return StampCheckResult(
+            [], "with a time stamp that was not examined", [_missing_package_text("its time stamp")]
+        )
 
 
-def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
+def check_response(content: bytes, envelope: bytes, roots_file: Path | None) -> StampCheckResult:
     """Check that the response of an authority is for this envelope. Errors: `UsageError`, `ModuleNotFoundError`."""
     from rfc3161_client import VerificationError, VerifierBuilder, decode_timestamp_response
 
     try:
-        response = decode_timestamp_response(_in_order(content))
+        response = decode_timestamp_response(_response_in_der_order(content))
         told = response.tst_info
         imprint, time = told.message_imprint, told.gen_time
     except (ValueError, IndexError, TypeError, AttributeError):
-        return StampCheck([Problem("time stamp not readable", FILE)])
-    hashed = _HASHES.get(imprint.hash_algorithm.dotted_string)
+        return StampCheckResult([Problem("time stamp not readable", TIMESTAMP_FILE)])
+    hashed = _HASH_BY_ALGORITHM_ID.get(imprint.hash_algorithm.dotted_string)
     if hashed is None or hashed(envelope).digest() != imprint.message:
-        return StampCheck([Problem("time stamp of another statement", FILE)])
+        return StampCheckResult([Problem("time stamp of another statement", TIMESTAMP_FILE)])
     shown = f"{time:%Y-%m-%dT%H:%M:%SZ}"
-    if roots is None:
-        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root identifies its authority)")
-    builder = VerifierBuilder(roots=_certificates(roots))
+    if roots_file is None:
+        return StampCheckResult([], f"with a time stamp of {shown} (only --timestamp-root identifies its authority)")
+    builder = VerifierBuilder(roots=_read_certificates(roots_file))
     try:
         builder.build().verify(response, imprint.message)
     except (VerificationError, ValueError) as error:
-        return StampCheck([Problem("time stamp of an authority that is not trusted", f"{FILE}: {error}")])
-    return StampCheck([], f"existed by {shown}, as a trusted authority states")
+        return StampCheckResult(
+            [Problem("time stamp of an authority that is not trusted", f"{TIMESTAMP_FILE}: {error}")]
+        )
+    return StampCheckResult([], f"existed by {shown}, as a trusted authority states")
 
 
-def _in_order(content: bytes) -> bytes:
+def _response_in_der_order(content: bytes) -> bytes:
     """Return a response with its certificates in DER order, which rfc3161-client requires and some authorities do not keep.
 
     No signature covers that order.
@@ -98,14 +102,14 @@ def _in_order(content: bytes) -> bytes:
     start, end = 0, len(content)
     # the path of nested elements: response, token, content, signed data, certificates
     for index, wanted in ((0, 0x30), (1, 0x30), (1, 0xA0), (0, 0x30), (3, 0xA0)):
-        tag, _, start, end = list(_elements(content, start, end))[index]
+        tag, _, start, end = list(_der_elements(content, start, end))[index]
         if tag != wanted:
             return content
-    certificates = sorted(content[first:last] for _, first, _, last in _elements(content, start, end))
+    certificates = sorted(content[first:last] for _, first, _, last in _der_elements(content, start, end))
     return content[:start] + b"".join(certificates) + content[end:]
 
 
-def _elements(content: bytes, start: int, end: int) -> Iterator[tuple[int, int, int, int]]:
+def _der_elements(content: bytes, start: int, end: int) -> Iterator[tuple[int, int, int, int]]:
     """Yield (tag, start, start of content, end of content) for each DER element between two byte positions."""
     while start < end:
         n, body = content[start + 1], start + 2
@@ -116,7 +120,7 @@ def _elements(content: bytes, start: int, end: int) -> Iterator[tuple[int, int, 
         start = body + n
 
 
-def _certificates(path: Path) -> list[x509.Certificate]:
+def _read_certificates(path: Path) -> list[x509.Certificate]:
     try:
         return x509.load_pem_x509_certificates(path.read_bytes())
     except (OSError, ValueError) as error:

@@ -13,11 +13,11 @@ from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.pack import again, audits, bag, consistency, sheets, signature, timestamp
 from drivelint.pack.bag import Problem
-from drivelint.pack.contents import RESULT, inside, library_versions
-from drivelint.pack.inputs import judged_drives, located
+from drivelint.pack.contents import RESULT_FOLDER, library_versions, path_inside_pack
+from drivelint.pack.inputs import judged_drives, request_with_present_paths
 from drivelint.pack.request import Verification
-from drivelint.pack.statement import ENVELOPE, FILE
-from drivelint.pack.write import PUBLIC_KEY
+from drivelint.pack.statement import ENVELOPE_FILE, STATEMENT_FILE
+from drivelint.pack.write import PUBLIC_KEY_FILE
 from drivelint.phrases import plural
 from drivelint.result import request as run_request
 from drivelint.result.files import parquet_bytes
@@ -26,18 +26,18 @@ from drivelint.result.names import TABLE_OF_FILE
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 
-    from drivelint.pack.consistency import Stated
+    from drivelint.pack.consistency import PackContent
     from drivelint.pack.request import VerifyRequest
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-_OUTCOMES: Final = {
+_OUTCOME_TEXTS: Final = {
     "PASSED": "every rule that applied was kept",
     "WARNED": "no rule was broken, but not everything was judged and kept with a margin",
     "FAILED": "the drives broke rules",
 }
 
-_OF_WHOM: Final = {"not signed", "nobody identified", "older pack"}
+_KINDS_IN_UNCHANGED_PACKS: Final = {"not signed", "nobody identified", "older pack"}
 """Kinds of problems that unchanged packs can have."""
 
 
@@ -47,42 +47,44 @@ def verify(request: VerifyRequest) -> Verification:
     Errors: `UsageError` if the folder is not a pack, or if a given key, log or map cannot be used.
     """
     key = _given_key(request)
-    wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE, timestamp.FILE))
-    more, signed = _of_signature(request.folder, key)
-    stamp = timestamp.of_pack(request.folder, request.timestamp_root)
-    wrong += [problem for problem in (*more, *stamp.problems, *_of_request(request)) if problem not in wrong]
+    wrong = bag.problems_of_bag(
+        request.folder, (ENVELOPE_FILE, PUBLIC_KEY_FILE, STATEMENT_FILE, timestamp.TIMESTAMP_FILE)
+    )
+    more, signed = _signature_problems_and_signer(request.folder, key)
+    stamp = timestamp.check_pack_timestamp(request.folder, request.timestamp_root)
+    wrong += [problem for problem in (*more, *stamp.problems, *_unmet_requirements(request)) if problem not in wrong]
     notes: list[str] = []
     judging, outcome = "not judged again", ""
-    if not wrong and audits.is_packed(request.folder):
-        wrong, judging, outcome, notes = audits.verified(request)
+    if not wrong and audits.is_pack_of_audit(request.folder):
+        wrong, judging, outcome, notes = audits.verify_audit_pack(request)
     elif not wrong:
-        wrong, stated = consistency.of_statement(request.folder)
+        wrong, stated = consistency.problems_and_content(request.folder)
         if stated is not None and not wrong:
-            judging, wrong, notes = _of_contents(request, stated)
+            judging, wrong, notes = _judging_problems_and_notes(request, stated)
             outcome = stated.outcome
-    elif any(problem.kind not in _OF_WHOM for problem in wrong):
+    elif any(problem.kind not in _KINDS_IN_UNCHANGED_PACKS for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # anyone can hash a changed pack again: only a known signature shows that it is unchanged
-    date = bag.date_of(request.folder)
+    date = bag.bagging_date(request.folder)
     signed = ", ".join(filter(None, (signed, stamp.description, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"
-    states = f"; it states that {_OUTCOMES[outcome]} ({outcome})" if outcome else ""
+    states = f"; it states that {_OUTCOME_TEXTS[outcome]} ({outcome})" if outcome else ""
     sentence = f"{request.folder}: {state}: {plural(n, 'file')}, {signed}, {judging}{states}"
     return Verification(wrong, sentence, [*stamp.notes, *notes])
 
 
-def _of_request(request: VerifyRequest) -> list[Problem]:
+def _unmet_requirements(request: VerifyRequest) -> list[Problem]:
     """Return why a consistent pack does not meet the request: its signer is unknown, or the pack is too old."""
     found = []
     if request.require_signature and request.key is None:
         what = (
             "the key in the pack does not identify its owner"
-            if (request.folder / ENVELOPE).is_file()
+            if (request.folder / ENVELOPE_FILE).is_file()
             else "it is not signed"
         )
         found.append(Problem("nobody identified", f"{what}: use the signer's key with --key"))
-    date = bag.date_of(request.folder)
+    date = bag.bagging_date(request.folder)
     if request.not_before is not None and (date is None or date < request.not_before):
         said = "without a date" if date is None else f"dated {date}"
         found.append(Problem("older pack", f"{said}, but --not-before {request.not_before} was required"))
@@ -99,75 +101,81 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
     return signature.public_key(request.key)
 
 
-def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
+def _signature_problems_and_signer(folder: Path, required_key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
     """Return the problems of the signature and of the unsigned files beside it, and a phrase about the signer."""
-    if not (folder / ENVELOPE).is_file():
-        wanted = key is not None or (folder / PUBLIC_KEY).is_file()
-        stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
-        return stamped + ([Problem("not signed", ENVELOPE)] if wanted else []), "not signed"
-    if not (folder / PUBLIC_KEY).is_file():
-        return [Problem("file removed", PUBLIC_KEY)], ""
+    if not (folder / ENVELOPE_FILE).is_file():
+        wanted = required_key is not None or (folder / PUBLIC_KEY_FILE).is_file()
+        stamped = (
+            [Problem("file added", timestamp.TIMESTAMP_FILE)] if (folder / timestamp.TIMESTAMP_FILE).is_file() else []
+        )
+        return stamped + ([Problem("not signed", ENVELOPE_FILE)] if wanted else []), "not signed"
+    if not (folder / PUBLIC_KEY_FILE).is_file():
+        return [Problem("file removed", PUBLIC_KEY_FILE)], ""
     try:
-        pack_key = signature.public_key(folder / PUBLIC_KEY)
-        return _of_envelope(folder, pack_key, key)
+        pack_key = signature.public_key(folder / PUBLIC_KEY_FILE)
+        return _envelope_problems_and_signer(folder, pack_key, required_key)
     except UsageError:
-        return [Problem("key not readable", PUBLIC_KEY)], ""
+        return [Problem("key not readable", PUBLIC_KEY_FILE)], ""
     except signature.EnvelopeError:
-        return [Problem("signature not readable", ENVELOPE)], ""
+        return [Problem("signature not readable", ENVELOPE_FILE)], ""
 
 
-def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """Return the problems of a signed envelope, and a phrase about the signer. `pack_key`: the key in the pack; `key`: the given key."""
-    content, signer = (folder / ENVELOPE).read_bytes(), pack_key if key is None else key
+def _envelope_problems_and_signer(
+    folder: Path, pack_key: Ed25519PublicKey, required_key: Ed25519PublicKey | None
+) -> tuple[list[Problem], str]:
+    """Return the problems of a signed envelope, and a phrase about the signer. `pack_key`: the key in the pack."""
+    content, signer = (folder / ENVELOPE_FILE).read_bytes(), pack_key if required_key is None else required_key
     by_own, by_signer = (signature.is_signed_by(content, each) for each in (pack_key, signer))
     if not (by_own or by_signer):
-        return [Problem("signature wrong", ENVELOPE)], ""
+        return [Problem("signature wrong", ENVELOPE_FILE)], ""
     has, wanted = (signature.key_id(each)[:16] for each in (pack_key, signer))
     if not by_signer:
         return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
-    wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY} is not the key that signed")]
-    if not signature.is_as_written(content, signer):
-        wrong.append(Problem("text beside the signed content", ENVELOPE))
-    if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(pack_key):
-        wrong.append(Problem("text beside the key", PUBLIC_KEY))
-    if (folder / FILE).is_file():
-        wrong.append(Problem("file added", FILE))
-    if key is None:
+    wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY_FILE} is not the key that signed")]
+    if not signature.is_canonical_envelope(content, signer):
+        wrong.append(Problem("text beside the signed content", ENVELOPE_FILE))
+    if (folder / PUBLIC_KEY_FILE).read_bytes() != signature.public_key_pem(pack_key):
+        wrong.append(Problem("text beside the key", PUBLIC_KEY_FILE))
+    if (folder / STATEMENT_FILE).is_file():
+        wrong.append(Problem("file added", STATEMENT_FILE))
+    if required_key is None:
         return wrong, f"signed by the key in the pack ({wanted}; only --key identifies its owner)"
     return wrong, f"signed by the key that was given ({wanted})"
 
 
-def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Problem], list[str]]:
+def _judging_problems_and_notes(request: VerifyRequest, stated: PackContent) -> tuple[str, list[Problem], list[str]]:
     """Judge the drives again if their logs are available. Return the result as a phrase, the problems, and notes on what was not
     examined."""
     result, evidence = stated.result, stated.evidence
-    notes = _notes(evidence, result)
+    notes = _notes_on_unexamined(evidence, result)
     try:
         check_request = _request_with_pack_paths(request.folder, evidence)
         if evidence["inputs"] is None and not request.traces:
-            wrong, told = consistency.of_findings(request.folder, result, check_request)
+            wrong, told = consistency.check_sql_of_findings(request.folder, result, check_request)
             notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
-            if sheets.sheet_files(evidence):
+            if sheets.sheet_paths_in_evidence(evidence):
                 notes.append("its incident sheets are as the pack says: they are written again only with the logs")
             return "not judged again", wrong, notes
-    except consistency.UNREADABLE as error:
+    except consistency.READ_ERRORS as error:
         return "", [Problem("evidence.json not readable", str(error))], notes
     try:
-        check_request = located(check_request, result.drives.to_pylist(), request.traces, request.map)
+        check_request = request_with_present_paths(
+            check_request, result.drives.to_pylist(), request.traces, request.map
+        )
     except UsageError as error:
         if request.traces or request.map is not None:
             raise
         return "", [Problem("inputs do not match the result", str(error))], notes
-    if sheets.sheet_files(evidence) and evidence["packed_with"] != library_versions():
+    if sheets.sheet_paths_in_evidence(evidence) and evidence["packed_with"] != library_versions():
         notes.append("packed with other versions of libraries: its incident sheets are not written again")
-    judging, wrong = _of_result(request.folder, stated, check_request)
+    judging, wrong = _judge_result_again(request.folder, stated, check_request)
     return judging, wrong, notes
 
 
-def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
+def _notes_on_unexamined(evidence: dict[str, Any], result: Result) -> list[str]:
     """Return notes on content that cannot be compared with the logs, on other versions, and on rules that are not drivelint's own."""
     notes = []
-    if (version := consistency.packed_by(evidence)) != __version__:
+    if (version := consistency.packing_version(evidence)) != __version__:
         notes.append(f"packed by drivelint {version}, and this is {__version__}: its reports are not written again")
     if (version := evidence["tool"]["version"]) != __version__:
         notes.append(f"judged by drivelint {version}, and this is {__version__}")
@@ -175,7 +183,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
         notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
     if evidence["not_judged"]:
         notes.append(f"not judged when it was checked, nor now: {', '.join(evidence['not_judged'])}")
-    if sheets.has_pdf(evidence):
+    if sheets.has_sheet_as_pdf(evidence):
         notes.append("an incident sheet as PDF is as the pack says: the page beside it is what is written again")
     if result.gate is not None:
         notes.append("baseline and waivers are as the pack says: they are not checked again")
@@ -186,45 +194,51 @@ def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunReque
     """Return the check with the paths of the files in the pack. Errors: `ValueError` for a path outside the pack."""
 
     inputs = evidence["inputs"]
-    check_request = run_request.load(folder / RESULT)
-    mapping = check_request.mapping if evidence["mapping"] is None else str(inside(folder, evidence["mapping"]))
+    check_request = run_request.load(folder / RESULT_FOLDER)
+    mapping = (
+        check_request.mapping if evidence["mapping"] is None else str(path_inside_pack(folder, evidence["mapping"]))
+    )
     check_request = replace(
-        check_request, mapping=mapping, rules_dirs=tuple(inside(folder, path) for path in evidence["rules_dirs"])
+        check_request,
+        mapping=mapping,
+        rules_dirs=tuple(path_inside_pack(folder, path) for path in evidence["rules_dirs"]),
     )
     if inputs is not None:
-        map_, map_dir = (inside(folder, inputs[what]) if what in inputs else None for what in ("map", "map_dir"))
-        traces = {name: str(inside(folder, path)) for name, path in inputs["traces"].items()}
+        map_, map_dir = (
+            path_inside_pack(folder, inputs[what]) if what in inputs else None for what in ("map", "map_dir")
+        )
+        traces = {name: str(path_inside_pack(folder, path)) for name, path in inputs["traces"].items()}
         check_request = replace(check_request, traces=traces, map=map_, map_dir=map_dir)
     return check_request
 
 
-def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple[str, list[Problem]]:
+def _judge_result_again(folder: Path, stated: PackContent, check_request: RunRequest) -> tuple[str, list[Problem]]:
     """Judge the drives again; return the result as a phrase, and the files that differ."""
     result = stated.result
-    margins = (folder / RESULT / "margins.parquet").is_file()
+    margins = (folder / RESULT_FOLDER / "margins.parquet").is_file()
     other_libraries = stated.evidence["packed_with"] != library_versions()
     try:
         with TemporaryDirectory(prefix="drivelint-") as work:
             fresh = again.check_again(result, check_request, Path(work) if margins else None)
             files = {
-                f"{RESULT}/{name}.parquet": parquet_bytes(_judged_rows(fresh, name), table)
+                f"{RESULT_FOLDER}/{name}.parquet": parquet_bytes(_table_of_judged_drives(fresh, name), table)
                 for name, table in TABLE_OF_FILE.items()
             }
             if fresh.margins_file is not None:
-                files[f"{RESULT}/margins.parquet"] = fresh.margins_file.read_bytes()
-        for name, contents in again.finding_evidence(result, check_request).items():
+                files[f"{RESULT_FOLDER}/margins.parquet"] = fresh.margins_file.read_bytes()
+        for name, contents in again.evidence_of_findings(result, check_request).items():
             if isinstance(contents, dict):
                 files |= {f"data/findings/{name}/{file}": content for file, content in contents.items()}
         if not other_libraries:
-            files |= sheets.again(folder / RESULT, stated.evidence, check_request)
+            files |= sheets.pages_written_again(folder / RESULT_FOLDER, stated.evidence, check_request)
     except DriveLintError as error:
         return "", [Problem("result not reproduced", str(error))]
     whole = result.drives.num_rows == fresh.drives.num_rows
     packed = {
-        f"{RESULT}/{name}.parquet": parquet_bytes(_judged_rows(result, name), table)
+        f"{RESULT_FOLDER}/{name}.parquet": parquet_bytes(_table_of_judged_drives(result, name), table)
         for name, table in ({} if whole else TABLE_OF_FILE).items()
     }
-    wrong, other_bytes = again.compared(folder, files, packed, other_libraries=other_libraries)
+    wrong, other_bytes = again.file_differences(folder, files, packed, other_libraries=other_libraries)
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()
     }
@@ -234,7 +248,7 @@ def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple
     return f"{n} judged again: {same}", wrong
 
 
-def _judged_rows(result: Result, name: str) -> Any:
+def _table_of_judged_drives(result: Result, name: str) -> Any:
     """Return a table of a result, without the drives that could not be judged."""
     rows = getattr(result, name)
     return rows.filter(pc.equal(rows["status"], "judged")) if name == "drives" else rows

@@ -13,11 +13,11 @@ from drivelint import __version__
 from drivelint.audit.bucket import url_of_path
 from drivelint.errors import UsageError
 from drivelint.pack import again, audits, bag, contents, sheets, signature, timestamp
-from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
-from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
-from drivelint.pack.inputs import located
-from drivelint.pack.request import MOST_FINDINGS, PackFunctions
-from drivelint.pack.statement import ENVELOPE, FILE, statement
+from drivelint.pack.contents import EVIDENCE_FILE, RESULT_FOLDER, packed_summary
+from drivelint.pack.copying import copy_into_new_folder, copy_rule_files, copy_rules_dirs, write_files
+from drivelint.pack.inputs import request_with_present_paths
+from drivelint.pack.request import DEFAULT_PACKED_FINDINGS, PackContentFunctions
+from drivelint.pack.statement import ENVELOPE_FILE, STATEMENT_FILE, in_toto_statement
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-PUBLIC_KEY: Final = "public-key.pem"
+PUBLIC_KEY_FILE: Final = "public-key.pem"
 
 
 class _PackSource(NamedTuple):
@@ -48,28 +48,28 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
     Errors: `UsageError` for a result, log, map, rule or key that is missing or has changed, and if `out` exists without `overwrite`;
     `OutputError`.
     """
-    key = ready(request)
-    is_audit = audits.is_audit(request.folder)
-    if not is_audit and request.findings != MOST_FINDINGS:
+    key = signing_key_of_valid_request(request)
+    is_audit = audits.is_audit_folder(request.folder)
+    if not is_audit and request.findings != DEFAULT_PACKED_FINDINGS:
         raise UsageError("--findings is of an audit: the pack of a check has all of its findings")
-    content = audits.content(request) if is_audit else _content(request)
+    content = audits.functions_for_audit(request) if is_audit else _functions_for_check_result(request)
     try:
         request.out.parent.mkdir(parents=True, exist_ok=True)
         work = Path(mkdtemp(prefix=".drivelint.", dir=request.out.parent))
         try:
             told = content.payload(work)
             info = {"Bag-Software-Agent": f"drivelint {__version__}"}
-            bag.begin(work, info if request.date is None else {"Bagging-Date": request.date, **info})
+            bag.write_info_and_manifest(work, info if request.date is None else {"Bagging-Date": request.date, **info})
             said = content.statement(work, told)
             if key is None:
-                (work / FILE).write_bytes(said)
+                (work / STATEMENT_FILE).write_bytes(said)
             else:
-                sealed = signature.envelope(said, key)
-                (work / ENVELOPE).write_bytes(sealed)
+                sealed = signature.signed_envelope(said, key)
+                (work / ENVELOPE_FILE).write_bytes(sealed)
                 if request.timestamp is not None:
-                    (work / timestamp.FILE).write_bytes(timestamp.read(request.timestamp, sealed))
-                (work / PUBLIC_KEY).write_bytes(signature.public_pem(key.public_key()))
-            bag.finish(work)
+                    (work / timestamp.TIMESTAMP_FILE).write_bytes(timestamp.read_response(request.timestamp, sealed))
+                (work / PUBLIC_KEY_FILE).write_bytes(signature.public_key_pem(key.public_key()))
+            bag.write_tag_manifest(work)
             work.chmod(0o755)
             if request.out.exists():
                 shutil.rmtree(request.out)
@@ -81,7 +81,7 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
     return told
 
 
-def ready(request: PackRequest) -> signature.SigningKey | None:
+def signing_key_of_valid_request(request: PackRequest) -> signature.SigningKey | None:
     """Return the key that signs a pack; None: the pack is not signed. Errors: `UsageError` for an invalid request, or if `out` exists
     without `overwrite`."""
     if (url := url_of_path(request.folder)) is not None:
@@ -91,22 +91,22 @@ def ready(request: PackRequest) -> signature.SigningKey | None:
     if request.timestamp is not None and request.key is None:
         raise UsageError("--timestamp is for a signed statement: use --sign with the key, too")
     key = None if request.key is None else signature.signing_key(request.key)
-    _free(request.out, overwrite=request.overwrite)
+    _refuse_occupied_folder(request.out, overwrite=request.overwrite)
     if request.out.resolve().is_relative_to(request.folder.resolve()):
         raise UsageError(f"{request.out}: lies in the result that is packed: choose a folder beside it")
     return key
 
 
-def _free(out: Path, *, overwrite: bool) -> None:
+def _refuse_occupied_folder(out: Path, *, overwrite: bool) -> None:
     if not out.exists() or (out.is_dir() and not any(out.iterdir())):
         return
-    if not out.is_dir() or not (out / bag.DECLARATION).is_file() or not (out / EVIDENCE).is_file():
+    if not out.is_dir() or not (out / bag.DECLARATION).is_file() or not (out / EVIDENCE_FILE).is_file():
         raise UsageError(f"{out}: is there and is no evidence pack: choose another folder")
     if not overwrite:
         raise UsageError(f"{out}: has a pack: choose another folder, or replace it with drivelint pack --overwrite")
 
 
-def _content(request: PackRequest) -> PackFunctions:
+def _functions_for_check_result(request: PackRequest) -> PackContentFunctions:
     """Return the functions that pack the result of a check. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     check_request = run_request.load(request.folder)
@@ -114,64 +114,70 @@ def _content(request: PackRequest) -> PackFunctions:
         raise UsageError(
             f"{request.folder}: its logs have options of their own, by a manifest: audit that, and pack the audit"
         )
-    check_request = located(check_request, result.drives.to_pylist(), request.traces, request.map)
-    rules, evidence = again.rules_of(result, check_request), again.finding_evidence(result, check_request)
+    check_request = request_with_present_paths(check_request, result.drives.to_pylist(), request.traces, request.map)
+    rules, evidence = again.rules_of_result(result, check_request), again.evidence_of_findings(result, check_request)
     checked_result = _PackSource(
-        result, check_request, rules, evidence, sheets.of_result(request.folder, result, check_request)
+        result, check_request, rules, evidence, sheets.sheets_of_result(request.folder, result, check_request)
     )
-    return PackFunctions(
-        lambda work: _payload(work, request, checked_result),
-        lambda work, told: statement(work, result, summary_of(work), told),
+    return PackContentFunctions(
+        lambda work: _write_payload(work, request, checked_result),
+        lambda work, told: in_toto_statement(work, result, packed_summary(work), told),
     )
 
 
-def _payload(work: Path, request: PackRequest, checked_result: _PackSource) -> dict[str, Any]:
+def _write_payload(pack_folder: Path, request: PackRequest, checked_result: _PackSource) -> dict[str, Any]:
     result, check_request, rules, evidence, incidents = checked_result
-    copied = [request.folder / name for name in sorted(contents.OUTPUTS) if (request.folder / name).is_file()]
-    (work / RESULT).mkdir(parents=True)
+    copied = [
+        request.folder / name for name in sorted(contents.COPIED_RESULT_FILES) if (request.folder / name).is_file()
+    ]
+    (pack_folder / RESULT_FOLDER).mkdir(parents=True)
     for path in copied:
-        shutil.copyfile(path, work / RESULT / path.name)
-    reports = [each for each in REPORT_FORMATS.values() if (work / RESULT / each[0]).is_file()]
+        shutil.copyfile(path, pack_folder / RESULT_FOLDER / path.name)
+    reports = [each for each in REPORT_FORMATS.values() if (pack_folder / RESULT_FOLDER / each[0]).is_file()]
     # A report in the folder may differ from the tables, or link to files that the pack leaves out.
     for name, render in reports:
-        (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
+        (pack_folder / RESULT_FOLDER / name).write_bytes(render(replace(result, folder=pack_folder / RESULT_FOLDER)))
     for name, files in evidence.items():
         if isinstance(files, dict):
-            write_files(files, work / "data" / "findings" / name, work)
+            write_files(files, pack_folder / "data" / "findings" / name, pack_folder)
     for sheet, content in incidents.items():
-        (work / sheet).parent.mkdir(exist_ok=True)
-        (work / sheet).write_bytes(content)
-    copy_rules(rules, work)
+        (pack_folder / sheet).parent.mkdir(exist_ok=True)
+        (pack_folder / sheet).write_bytes(content)
+    copy_rule_files(rules, pack_folder)
     named = (
         check_request.mapping is not None and Path(check_request.mapping).is_file()
     )  # else a built-in mapping, or none
-    mapping = copy(Path(str(check_request.mapping)), work / "data" / "mapping", work) if named else None
-    inputs = _copied_inputs(work, check_request) if request.with_inputs else None
+    mapping = (
+        copy_into_new_folder(Path(str(check_request.mapping)), pack_folder / "data" / "mapping", pack_folder)
+        if named
+        else None
+    )
+    inputs = _copy_inputs(pack_folder, check_request) if request.with_inputs else None
     taken = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
     left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in taken]
     told = {
-        "evidence": contents.FORM,
-        **contents.facts(work, result, check_request),
+        "evidence": contents.FORMAT_VERSION,
+        **contents.evidence_values_of_result(pack_folder, result, check_request),
         "packed_with": contents.library_versions(),
         "mapping": mapping,
-        "rules_dirs": copy_rules_dirs(check_request.rules_dirs, work),
+        "rules_dirs": copy_rules_dirs(check_request.rules_dirs, pack_folder),
         "inputs": inputs,
         **({"incidents": list(incidents)} if incidents else {}),
-        "findings": contents.findings(result.findings.to_pylist(), evidence),
+        "findings": contents.finding_entries(result.findings.to_pylist(), evidence),
         "left_out": [path.relative_to(request.folder).as_posix() for path in left],
     }
-    (work / EVIDENCE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
+    (pack_folder / EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
     return told
 
 
-def _copied_inputs(work: Path, check_request: RunRequest) -> dict[str, Any]:
+def _copy_inputs(pack_folder: Path, check_request: RunRequest) -> dict[str, Any]:
     """Copy logs and map into the pack; return their paths in the pack."""
-    inputs = work / "data" / "inputs"
+    inputs = pack_folder / "data" / "inputs"
     told: dict[str, Any] = {"traces": {}}
     for name, text in sorted(check_request.traces.items()):
-        told["traces"][name] = copy(Path(text), inputs / "traces" / name, work)
+        told["traces"][name] = copy_into_new_folder(Path(text), inputs / "traces" / name, pack_folder)
     for what in ("map", "map_dir"):
         given = getattr(check_request, what)
         if given is not None:
-            told[what] = copy(given, inputs / what, work)
+            told[what] = copy_into_new_folder(given, inputs / what, pack_folder)
     return told

@@ -11,8 +11,14 @@ from typing import TYPE_CHECKING, Any
 from drivelint.errors import ExitCode
 from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack import bag
-from drivelint.pack.audits.tables import AUDIT
-from drivelint.pack.statement import PREDICATE, SEALED, TYPE, resource_descriptor, result_word
+from drivelint.pack.audits.tables import AUDIT_FOLDER
+from drivelint.pack.statement import (
+    FILES_IN_STATEMENT,
+    PREDICATE_TYPE,
+    STATEMENT_TYPE,
+    resource_descriptor,
+    result_word,
+)
 from drivelint.result.model import MAP_MISFIT_CODES
 from drivelint.sql.statements import statement as query
 
@@ -21,23 +27,23 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
+def in_toto_statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about the audit whose tables and manifest are in the pack `folder`."""
-    with open_packed_audit(folder / AUDIT) as (con, _):
+    with open_packed_audit(folder / AUDIT_FOLDER) as (con, _):
         drives = (
             con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MAP_MISFIT_CODES)})
             .to_arrow_table()
             .to_pylist()
         )
-    outcomes = {word: _names(drives, word) for word in ("pass", "near_miss", "fail", "unknown")}
+    outcomes = {word: _test_names_with_outcome(drives, word) for word in ("pass", "near_miss", "fail", "unknown")}
     maps = sorted({(drive["map"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
     audit = evidence["audit"]
     content = {
-        "_type": TYPE,
+        "_type": STATEMENT_TYPE,
         "subject": [
             resource_descriptor(drive["log"], drive["log_sha256"]) for drive in drives if drive["status"] == "judged"
         ],
-        "predicateType": PREDICATE,
+        "predicateType": PREDICATE_TYPE,
         "predicate": {
             "result": result_word(outcomes, is_clean=evidence["exit"]["code"] == ExitCode.OK),
             "configuration": [
@@ -51,11 +57,11 @@ def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
             "drivelint_undecidedTests": outcomes["unknown"],
             "drivelint_drives": drives,
             "drivelint_exit": evidence["exit"],
-            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED],
+            "drivelint_pack": [resource_descriptor(name, bag.sha256_of(folder / name)) for name in FILES_IN_STATEMENT],
         },
     }
     return (json.dumps(content, indent=2, ensure_ascii=False) + "\n").encode()
 
 
-def _names(drives: list[dict[str, Any]], outcome: str) -> list[str]:
+def _test_names_with_outcome(drives: list[dict[str, Any]], outcome: str) -> list[str]:
     return [f"{drive['drive_id']} {drive['key']}" for drive in drives if drive["outcome"] == outcome]

@@ -26,8 +26,8 @@ from drivelint.formats import expand_traces
 from drivelint.formats.files import identify
 from drivelint.formats.search import why_unreadable
 from drivelint.pack.bag import DATA, Problem, sha256_of
-from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
-from drivelint.pack.inputs import located
+from drivelint.pack.contents import FINDING_ENTRY_COLUMNS, evidence_values_of_rules, sha256_by_path
+from drivelint.pack.inputs import request_with_present_paths
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import group_rows
 from drivelint.result.model import Result
@@ -44,11 +44,11 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
     from drivelint.pack.finding_sql import Row
 
-AUDIT: Final = f"{DATA}/audit"
-FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
-FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
+AUDIT_FOLDER: Final = f"{DATA}/audit"
+UNCHUNKED_FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
+FINDING_KEYS: Final = ("key", *FINDING_ENTRY_COLUMNS)
 """The fields of `evidence.json` about a finding of an audit. `key` identifies its drive."""
-_OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
+_SUMMARY_KEYS_OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
 """The keys of `summary.json` about the run that wrote it; they cannot be derived from the tables."""
 
 
@@ -61,22 +61,27 @@ class PackedDrive(NamedTuple):
     check_request: RunRequest
 
 
-def is_audit(folder: Path) -> bool:
+def is_audit_folder(folder: Path) -> bool:
     """Return whether a folder was written by `audit --out`."""
     return (folder / AUDIT_FILE).is_file()
 
 
-def is_packed(folder: Path) -> bool:
+def is_pack_of_audit(folder: Path) -> bool:
     """Return whether a pack contains an audit."""
-    return (folder / AUDIT).is_dir()
+    return (folder / AUDIT_FOLDER).is_dir()
 
 
-def names(results: ResultStore) -> list[str]:
+def packed_file_names(results: ResultStore) -> list[str]:
     """Return the files of an audit that a pack contains: its settings, summary and rules, and all chunks of its tables."""
-    return [*FILES, *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunk_ids(results))]
+    return [
+        *UNCHUNKED_FILES,
+        *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunk_ids(results)),
+    ]
 
 
-def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
+def evidence_values_of_audit(
+    folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]
+) -> dict[str, Any]:
     """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
     counted = summary_of_all_drives(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
@@ -90,20 +95,24 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
         "n_findings": n_findings,
         "not_judged": not_judged,
         "exit": {"code": int(counted.exit_code(fail_on, strict=False)), "fail_on": fail_on},
-        **facts_of_rules(folder, rules),
-        "outputs": hashes(folder, AUDIT),
+        **evidence_values_of_rules(folder, rules),
+        "outputs": sha256_by_path(folder, AUDIT_FOLDER),
     }
 
 
-def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]) -> list[str]:
+def contradicted_summary_keys(
+    con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]
+) -> list[str]:
     """Return the keys of `summary.json` that contradict the tables."""
     counted = summary_of_all_drives(con, 0).file_content() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
-        key for key in (counted.keys() | packed_summary.keys()) - _OF_RUN if packed_summary.get(key) != counted.get(key)
+        key
+        for key in (counted.keys() | packed_summary.keys()) - _SUMMARY_KEYS_OF_RUN
+        if packed_summary.get(key) != counted.get(key)
     )
 
 
-def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
+def receipt_problems(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
     """Yield the differences between receipts and the rows of their drives, chunk by chunk.
 
     `same_libraries`: also compare the hashes of the rows, which depend on the version of pyarrow.
@@ -116,7 +125,7 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
             parts = {}
             for table in (*TABLES, "receipts"):
                 rows = pq.read_table(results.fetch(chunk_name(table, chunk), Path(home)), partitioning=None)
-                parts[table] = _by_key(rows.cast(schemas[table]) if table in schemas else rows)
+                parts[table] = _rows_by_drive_key(rows.cast(schemas[table]) if table in schemas else rows)
         receipts = {key: part.to_pylist() for key, part in parts.pop("receipts").items()}
         for key in sorted({*receipts, *(key for part in parts.values() for key in part)}):
             rows_of_key = {table: parts[table].get(key, schemas[table].empty_table()) for table in TABLES}
@@ -127,11 +136,13 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
                     "receipts do not match the tables", f"{key}: a drive has one receipt and one row in drives"
                 )
                 continue
-            for what in _unlike(receipts[key][0], receipt_fields(rows_of_key, stable), same_libraries=same_libraries):
+            for what in _differing_receipt_fields(
+                receipts[key][0], receipt_fields(rows_of_key, stable), same_libraries=same_libraries
+            ):
                 yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
 
 
-def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
+def _differing_receipt_fields(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
     """Return the fields of a receipt that differ from `due`, the values computed from the drive's rows."""
     told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
     if told["status"] == "quarantined" and due["status"] == "refused":
@@ -143,7 +154,7 @@ def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[
     return sorted(name for name, value in due.items() if told.get(name) != value)
 
 
-def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
+def _rows_by_drive_key(rows: pa.Table) -> dict[str, pa.Table]:
     """Return key -> its rows. The rows of a key are contiguous, as in chunks."""
     counted = pc.value_counts(rows["key"]).to_pylist()
     ends = [0]
@@ -177,17 +188,17 @@ def packed_drives(
             rules=rules,
             fail_on=str(audit.audit_json["fail_on"]),
         )
-        yield PackedDrive(key, receipt, result, asked_of(audit, receipt, rules_dirs))
+        yield PackedDrive(key, receipt, result, equivalent_check_request(audit, receipt, rules_dirs))
 
 
-def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
+def equivalent_check_request(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
     """Return the request of a check that has the same result as the audit for the drive of a receipt. `receipt`: None: a request without a
     drive."""
     options = msgspec.json.decode(
         (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
     )
     given = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
-    settings = settings_of(audit)
+    settings = judge_settings(audit)
     traces = {} if receipt is None else {receipt["drive_id"]: receipt["log"]}
     return RunRequest(
         **given,
@@ -199,12 +210,14 @@ def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) ->
     )
 
 
-def settings_of(audit: Audit) -> JudgeSettings:
+def judge_settings(audit: Audit) -> JudgeSettings:
     """Return the settings that determined the verdicts of an audit, with the original paths of the folders of rules."""
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
-def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]) -> dict[str, Path]:
+def given_logs_by_sha256(
+    con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]
+) -> dict[str, Path]:
     """Return hash -> path of the given logs that belong to a drive with one of these findings. Folders are searched.
 
     Files of other sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
@@ -223,11 +236,13 @@ def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: 
     return found
 
 
-def located_drive(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
+def drive_request_with_paths(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
     """Return the check of a drive with the present paths of its log and map, after comparing both with their hashes.
 
-    `log`: None: the original path. `map_`: used only if the drive was judged on this map. Errors: as `inputs.located`.
+    `log`: None: the original path. `map_`: used only if the drive was judged on this map. Errors: as `request_with_present_paths`.
     """
     if map_ is not None and (not map_.is_file() or sha256_of(map_) != drive.receipt["map_sha256"]):
         map_ = None
-    return located(drive.check_request, drive.result.drives.to_pylist(), () if log is None else (log,), map_)
+    return request_with_present_paths(
+        drive.check_request, drive.result.drives.to_pylist(), () if log is None else (log,), map_
+    )

@@ -21,11 +21,11 @@ from drivelint.errors import DriveLintError, UsageError
 from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack import again, consistency, signature
 from drivelint.pack.audits import tables
-from drivelint.pack.audits.statement import statement
+from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.bag import DATA, Problem
-from drivelint.pack.consistency import UNREADABLE
-from drivelint.pack.contents import EVIDENCE, FINDINGS, inside, library_versions
-from drivelint.pack.statement import ENVELOPE, FILE, differences
+from drivelint.pack.consistency import READ_ERRORS
+from drivelint.pack.contents import EVIDENCE_FILE, FINDINGS_FOLDER, library_versions, path_inside_pack
+from drivelint.pack.statement import ENVELOPE_FILE, STATEMENT_FILE, statement_problems
 from drivelint.phrases import name_list, plural
 
 if TYPE_CHECKING:
@@ -41,14 +41,14 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 
-_UNREADABLE: Final = (*UNREADABLE, duckdb.Error, msgspec.MsgspecError, DriveLintError)
-_NOT_FACTS: Final = frozenset({
+_READ_ERRORS: Final = (*READ_ERRORS, duckdb.Error, msgspec.MsgspecError, DriveLintError)
+_UNDERIVED_EVIDENCE_KEYS: Final = frozenset({
     "evidence", "packed_with", "mappings", "rules_dirs", "inputs", "findings", "findings_left_out", "left_out",
 })  # fmt: skip
 
 
 @dataclass
-class _Pack:
+class _AuditPack:
     """The opened pack of an audit, with counts of what was verified.
 
     `rules_by_id`: the rules that judged; None: this drivelint has other rules. `packed_by`: version of drivelint that wrote the pack.
@@ -70,68 +70,68 @@ class _Pack:
     other_bytes: bool = False
 
 
-def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
+def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
     """Return the problems, a phrase about the drives judged again, the result stated in the pack, and notes on what was not examined.
 
     Errors: `UsageError` for given logs or a given map that belong to no drive in the pack.
     """
     with ExitStack() as stack:
         try:
-            con, audit = stack.enter_context(open_packed_audit(request.folder / tables.AUDIT))
-            evidence = consistency.evidence_of(request.folder)
-            rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
-            dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])
-            packed_by = consistency.packed_by(evidence)
-            pack = _Pack(request.folder, con, audit, evidence, rules, dirs, _rules_by_id(rules, dirs), packed_by)
+            con, audit = stack.enter_context(open_packed_audit(request.folder / tables.AUDIT_FOLDER))
+            evidence = consistency.read_evidence(request.folder)
+            rules = pq.read_table(request.folder / tables.AUDIT_FOLDER / RULES_FILE)
+            dirs = tuple(path_inside_pack(request.folder, place) for place in evidence["rules_dirs"])
+            packed_by = consistency.packing_version(evidence)
+            pack = _AuditPack(request.folder, con, audit, evidence, rules, dirs, _rules_by_id(rules, dirs), packed_by)
             findings = tables.worst_findings(con, len(evidence["findings"]))
-            wrong = [*_of_tables(pack), *_of_evidence(pack, findings)]
-            due = statement(pack.folder, evidence)
-            wrong = _of_statement(pack.folder, due) + wrong
+            wrong = [*_problems_of_tables(pack), *_problems_of_evidence(pack, findings)]
+            due = in_toto_statement(pack.folder, evidence)
+            wrong = _problems_of_statement(pack.folder, due) + wrong
             outcome = str(json.loads(due)["predicate"]["result"])
-        except _UNREADABLE as error:
+        except _READ_ERRORS as error:
             return [Problem("result not readable", str(error))], "", "", []
         if wrong:
             return wrong, "not judged again", "", []
-        given = tables.logs_of(con, findings, request.traces)
+        given = tables.given_logs_by_sha256(con, findings, request.traces)
         try:
             for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-                wrong += _of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+                wrong += _problems_of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
         except msgspec.MsgspecError as error:
             wrong.append(Problem("receipts not readable", str(error)))
-        return wrong, _judging(pack), outcome, _notes(pack)
+        return wrong, _judged_again_phrase(pack), outcome, _notes_on_unexamined(pack)
 
 
-def _of_tables(pack: _Pack) -> Iterator[Problem]:
+def _problems_of_tables(pack: _AuditPack) -> Iterator[Problem]:
     """Yield the contradictions between the tables, receipts, rules and summary of the audit."""
-    place = pack.folder / tables.AUDIT
+    place = pack.folder / tables.AUDIT_FOLDER
     told = pack.audit.audit_json
     said = json.loads((place / SUMMARY_FILE).read_bytes())
-    for key in tables.unlike_summary(pack.con, pack.audit, said):
+    for key in tables.contradicted_summary_keys(pack.con, pack.audit, said):
         yield Problem("summary.json does not match the tables", key)
-    yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
+    yield from tables.receipt_problems(LocalFolder(place), pack.rules, same_libraries=_has_same_pyarrow(pack))
     if pack.rules_by_id is not None:
-        check_request = tables.asked_of(pack.audit, None, pack.rules_dirs)
-        if why := consistency.unlike_rules(list(pack.rules_by_id.values()), pack.rules, check_request):
+        check_request = tables.equivalent_check_request(pack.audit, None, pack.rules_dirs)
+        if why := consistency.rules_contradiction(list(pack.rules_by_id.values()), pack.rules, check_request):
             yield Problem("audit.json does not match the result", why)
-    settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
+    settings = replace(tables.judge_settings(pack.audit), rules_dirs=pack.rules_dirs)
     if told["versions"] == versions() and told["run_id"] != run_id(settings):
         yield Problem("audit.json does not match the result", "run_id")
 
 
-def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
+def _problems_of_evidence(pack: _AuditPack, findings: Sequence[Row]) -> Iterator[Problem]:
     """Yield the contradictions between `evidence.json` and the tables, and the files that are not named anywhere."""
     folder, evidence = pack.folder, pack.evidence
-    due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
+    due = tables.evidence_values_of_audit(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = due["n_findings"] - len(findings)
     said = [{key: row[key] for key in tables.FINDING_KEYS} for row in findings]
-    keys = consistency.differing(evidence, due, said, pack.rules.to_pylist())
+    keys = consistency.differing_evidence_keys(evidence, due, said, pack.rules.to_pylist())
     inputs = evidence["inputs"] or {"traces": {}, "maps": {}}
     of_findings = {row["key"] for row in findings}
     if evidence["inputs"] is not None and inputs["traces"].keys() != of_findings:
         keys.append("inputs")
-    for key in [*keys, *sorted(evidence.keys() - due.keys() - _NOT_FACTS)]:
+    for key in [*keys, *sorted(evidence.keys() - due.keys() - _UNDERIVED_EVIDENCE_KEYS)]:
         yield Problem("evidence.json does not match the result", key)
-    named = {EVIDENCE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
+    named = {EVIDENCE_FILE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
     places = [
         *evidence["rules_dirs"],
         *evidence["mappings"].values(),
@@ -139,20 +139,24 @@ def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
         *inputs["maps"].values(),
     ]
     kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
-    of_audit = {f"{tables.AUDIT}/{name}" for name in tables.names(LocalFolder(folder / tables.AUDIT))}
+    of_audit = {
+        f"{tables.AUDIT_FOLDER}/{name}" for name in tables.packed_file_names(LocalFolder(folder / tables.AUDIT_FOLDER))
+    }
     named -= {name for name in due["outputs"] if name not in of_audit}
-    yield from consistency.unnamed(folder, evidence, named, [place for place in places if place.startswith(kept)])
+    yield from consistency.unnamed_files(folder, evidence, named, [place for place in places if place.startswith(kept)])
 
 
-def _of_statement(folder: Path, due: bytes) -> list[Problem]:
-    name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
+def _problems_of_statement(folder: Path, due: bytes) -> list[Problem]:
+    name = ENVELOPE_FILE if (folder / ENVELOPE_FILE).is_file() else STATEMENT_FILE
     if not (folder / name).is_file():
-        return [Problem("statement missing", FILE)]
+        return [Problem("statement missing", STATEMENT_FILE)]
     content = (folder / name).read_bytes()
-    return differences(signature.payload_of(content) if name == ENVELOPE else content, due)
+    return statement_problems(signature.payload_of_envelope(content) if name == ENVELOPE_FILE else content, due)
 
 
-def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Path | None) -> list[Problem]:
+def _problems_of_drive(
+    pack: _AuditPack, drive: tables.PackedDrive, log: Path | None, map_: Path | None
+) -> list[Problem]:
     """Judge a drive again, or, without its log, run the SQL of its findings. Return the problems.
 
     Errors: `UsageError` if a log was given but its map cannot be found.
@@ -160,12 +164,12 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     inputs = pack.evidence["inputs"]
     try:
         drive = drive._replace(check_request=_request_with_pack_paths(pack, drive))
-    except UNREADABLE as error:
+    except READ_ERRORS as error:
         return [Problem("evidence.json not readable", str(error))]
     if log is None and inputs is None:
-        return _of_rows(pack, drive)
+        return _problems_of_finding_sql(pack, drive)
     try:
-        check_request = tables.located_drive(drive, log, map_)
+        check_request = tables.drive_request_with_paths(drive, log, map_)
     except UsageError as error:
         if log is not None:
             raise
@@ -173,13 +177,17 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     pack.n_judged += 1
     try:
         fresh = again.check_again(drive.result, check_request, None, evidence=False)
-        evidence = again.finding_evidence(
+        evidence = again.evidence_of_findings(
             drive.result, check_request, loaded_rules=[*(pack.rules_by_id or {}).values()]
         )
     except DriveLintError as error:
         return [Problem("result not reproduced", str(error))]
-    wrong = [] if _same_rows(pack, drive, fresh) else [Problem("result not reproduced", f"the rows of {_name(drive)}")]
-    place = f"{FINDINGS}/{drive.key}"
+    wrong = (
+        []
+        if _has_same_rows_as_audit(pack, drive, fresh)
+        else [Problem("result not reproduced", f"the rows of {_drive_name_and_key(drive)}")]
+    )
+    place = f"{FINDINGS_FOLDER}/{drive.key}"
     files = {
         f"{place}/{name}/{file}": content
         for name, contents in evidence.items()
@@ -187,35 +195,37 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
         for file, content in contents.items()
     }
     other_libraries = pack.evidence["packed_with"] != library_versions()
-    differing, other_bytes = again.compared(pack.folder, files, {}, other_libraries=other_libraries)
+    differing, other_bytes = again.file_differences(pack.folder, files, {}, other_libraries=other_libraries)
     pack.other_bytes |= other_bytes
     there = {path.relative_to(pack.folder).as_posix() for path in (pack.folder / place).rglob("*") if path.is_file()}
     extra = sorted(there - files.keys())
     return [*wrong, *differing, *(Problem("result not reproduced", f"{path}: no finding gives it") for path in extra)]
 
 
-def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
+def _request_with_pack_paths(pack: _AuditPack, drive: tables.PackedDrive) -> RunRequest:
     """Return the check of a drive with the paths of the files in the pack. Errors: `ValueError` for a path outside the pack."""
     check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
-        check_request = replace(check_request, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
+        check_request = replace(
+            check_request, mapping=str(path_inside_pack(pack.folder, pack.evidence["mappings"][drive.key]))
+        )
     if (inputs := pack.evidence["inputs"]) is not None:
-        road = inside(pack.folder, inputs["maps"][drive.key]) if drive.key in inputs["maps"] else None
+        road = path_inside_pack(pack.folder, inputs["maps"][drive.key]) if drive.key in inputs["maps"] else None
         is_folder = road is not None and road.is_dir()
-        traces = {drive.receipt["drive_id"]: str(inside(pack.folder, inputs["traces"][drive.key]))}
+        traces = {drive.receipt["drive_id"]: str(path_inside_pack(pack.folder, inputs["traces"][drive.key]))}
         check_request = replace(
             check_request, traces=traces, map=None if is_folder else road, map_dir=road if is_folder else None
         )
     return check_request
 
 
-def _of_rows(pack: _Pack, drive: tables.PackedDrive) -> list[Problem]:
+def _problems_of_finding_sql(pack: _AuditPack, drive: tables.PackedDrive) -> list[Problem]:
     """Run the SQL of a drive's findings on the rows in the pack, and return the findings with other numbers."""
     pack.n_alone += 1
     if pack.rules_by_id is None:
         return []
-    rows = {f"{FINDINGS}/{drive.key}/{row['finding_id']}": row for row in drive.result.findings.to_pylist()}
-    wrong, n = consistency.of_sql(pack.folder, rows, pack.rules_by_id, drive.check_request)
+    rows = {f"{FINDINGS_FOLDER}/{drive.key}/{row['finding_id']}": row for row in drive.result.findings.to_pylist()}
+    wrong, n = consistency.check_sql_in_folders(pack.folder, rows, pack.rules_by_id, drive.check_request)
     pack.n_run += n
     return wrong
 
@@ -227,13 +237,13 @@ def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rul
         return None
 
 
-def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
+def _has_same_rows_as_audit(pack: _AuditPack, drive: tables.PackedDrive, fresh: Result) -> bool:
     """Return whether the new result of a drive has the same rows as the audit."""
     rows = {table: with_key(getattr(fresh, table), drive.key, None) for table in TABLES}
     if rows_sha256(rows) == drive.receipt["rows_sha256"]:
         return True
     pack.other_bytes = True
-    return not _same_libraries(pack) and all(
+    return not _has_same_pyarrow(pack) and all(
         pack.con.execute(f"FROM {table} WHERE key = ?", [drive.key])
         .to_arrow_table()
         .select(of.column_names)
@@ -243,22 +253,22 @@ def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
     )
 
 
-def _same_libraries(pack: _Pack) -> bool:
+def _has_same_pyarrow(pack: _AuditPack) -> bool:
     return bool(pack.audit.audit_json["versions"].get("pyarrow") == versions()["pyarrow"])
 
 
-def _name(drive: tables.PackedDrive) -> str:
+def _drive_name_and_key(drive: tables.PackedDrive) -> str:
     return f"{drive.receipt['drive_id']} ({drive.key})"
 
 
-def _judging(pack: _Pack) -> str:
+def _judged_again_phrase(pack: _AuditPack) -> str:
     if not pack.n_judged:
         return "not judged again"
     same = "the same rows, written by another version of a library" if pack.other_bytes else "the same bytes"
     return f"{pack.n_judged} of {plural(pack.evidence['n_drives'], 'drive')} judged again: {same}"
 
 
-def _notes(pack: _Pack) -> list[str]:
+def _notes_on_unexamined(pack: _AuditPack) -> list[str]:
     """Return notes on results that were not compared with the logs, on other versions, and on rules that are not drivelint's own."""
     notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
@@ -271,7 +281,7 @@ def _notes(pack: _Pack) -> list[str]:
     if rest := evidence["n_drives"] - len(evidence["not_judged"]) - pack.n_judged - pack.n_alone:
         known = (
             "not judged again; their rows have the hashes in the receipts"
-            if _same_libraries(pack)
+            if _has_same_pyarrow(pack)
             else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
         )
         notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {known}")

@@ -16,9 +16,9 @@ from drivelint.errors import UsageError
 from drivelint.fleet_report.audit_views import open_audits, open_packed_audit
 from drivelint.pack import again, contents
 from drivelint.pack.audits import tables
-from drivelint.pack.audits.statement import statement
-from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
-from drivelint.pack.request import PackFunctions
+from drivelint.pack.audits.statement import in_toto_statement
+from drivelint.pack.copying import copy_into_new_folder, copy_rule_files, copy_rules_dirs, write_files
+from drivelint.pack.request import PackContentFunctions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,73 +28,73 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def content(request: PackRequest) -> PackFunctions:
+def functions_for_audit(request: PackRequest) -> PackContentFunctions:
     """Return the functions that pack an audit. Errors: `UsageError` for an audit that has not ended."""
     with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
-    return PackFunctions(lambda work: _payload(work, request), statement)
+    return PackContentFunctions(lambda work: _write_payload(work, request), in_toto_statement)
 
 
-def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
+def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
     """Copy the tables, judge the drives of the worst findings again, and write their evidence. Return the content of `evidence.json`."""
     results = LocalFolder(request.folder)
-    names = tables.names(results)
+    names = tables.packed_file_names(results)
     for name in names:
-        (work / tables.AUDIT / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(request.folder / name, work / tables.AUDIT / name)
-    with open_packed_audit(work / tables.AUDIT) as (con, audit):
-        said = json.loads((work / tables.AUDIT / SUMMARY_FILE).read_bytes())
-        if wrong := tables.unlike_summary(con, audit, said):
+        (pack_folder / tables.AUDIT_FOLDER / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(request.folder / name, pack_folder / tables.AUDIT_FOLDER / name)
+    with open_packed_audit(pack_folder / tables.AUDIT_FOLDER) as (con, audit):
+        said = json.loads((pack_folder / tables.AUDIT_FOLDER / SUMMARY_FILE).read_bytes())
+        if wrong := tables.contradicted_summary_keys(con, audit, said):
             raise UsageError(f"{request.folder}: its summary and its tables do not agree ({wrong[0]}): audit again")
-        rules = pq.read_table(work / tables.AUDIT / RULES_FILE)
+        rules = pq.read_table(pack_folder / tables.AUDIT_FOLDER / RULES_FILE)
         findings = tables.worst_findings(con, request.findings)
-        dirs = tables.settings_of(audit).rules_dirs
+        dirs = tables.judge_settings(audit).rules_dirs
         loaded_rules = again.rules_of_table(rules, dirs)
-        copy_rules(loaded_rules, work)
-        inputs = _Inputs(work, with_inputs=request.with_inputs)
-        given = tables.logs_of(con, findings, request.traces)
+        copy_rule_files(loaded_rules, pack_folder)
+        inputs = _InputCopier(pack_folder, with_inputs=request.with_inputs)
+        given = tables.given_logs_by_sha256(con, findings, request.traces)
         found = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            check_request = tables.located_drive(drive, given.get(drive.receipt["log_sha256"]), request.map)
+            check_request = tables.drive_request_with_paths(drive, given.get(drive.receipt["log_sha256"]), request.map)
             inputs.add(drive.key, check_request)
-            found += _findings(work, drive, check_request, loaded_rules)
+            found += _write_findings_of_drive(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
-            "evidence": contents.FORM,
-            **tables.facts(work, con, audit, rules.to_pylist()),
+            "evidence": contents.FORMAT_VERSION,
+            **tables.evidence_values_of_audit(pack_folder, con, audit, rules.to_pylist()),
             "packed_with": contents.library_versions(),
             "mappings": inputs.mappings,
-            "rules_dirs": copy_rules_dirs(dirs, work),
+            "rules_dirs": copy_rules_dirs(dirs, pack_folder),
             "inputs": {"traces": inputs.traces, "maps": inputs.maps} if request.with_inputs else None,
             "findings": sorted(found, key=lambda row: order[row["key"], row["finding_id"]]),
         }
     told["findings_left_out"] = told["n_findings"] - len(found)
     there = {path.relative_to(request.folder).parts[0] for path in request.folder.rglob("*") if path.is_file()}
     told["left_out"] = sorted(name for name in there - {Path(name).parts[0] for name in names} if name[0] != ".")
-    (work / contents.EVIDENCE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
+    (pack_folder / contents.EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
     return told
 
 
-def _findings(
-    work: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
+def _write_findings_of_drive(
+    pack_folder: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
 ) -> list[dict[str, Any]]:
     """Write the data that reproduce the findings of a drive; return their entries for `evidence.json`."""
-    place = f"{contents.FINDINGS}/{drive.key}"
-    evidence = again.finding_evidence(drive.result, check_request, loaded_rules=loaded_rules)
+    place = f"{contents.FINDINGS_FOLDER}/{drive.key}"
+    evidence = again.evidence_of_findings(drive.result, check_request, loaded_rules=loaded_rules)
     for name, files in evidence.items():
         if isinstance(files, dict):
-            write_files(files, work / place / name, work)
-    told = contents.findings(drive.result.findings.to_pylist(), evidence, place)
+            write_files(files, pack_folder / place / name, pack_folder)
+    told = contents.finding_entries(drive.result.findings.to_pylist(), evidence, place)
     return [{"key": drive.key, **row} for row in told]
 
 
-class _Inputs:
+class _InputCopier:
     """Copies mappings, and with `with_inputs` also logs and maps, into a pack. A file that drives share is copied once. Each dict: key of a
     drive -> path in the pack."""
 
-    def __init__(self, work: Path, *, with_inputs: bool) -> None:
-        self._work, self._with_inputs = work, with_inputs
+    def __init__(self, pack_folder: Path, *, with_inputs: bool) -> None:
+        self._work, self._with_inputs = pack_folder, with_inputs
         self._places: dict[Path, str] = {}
         self.mappings: dict[str, str] = {}
         self.traces: dict[str, str] = {}
@@ -116,5 +116,5 @@ class _Inputs:
     def _place(self, source: Path, folder: str) -> str:
         if source not in self._places:
             place = self._work / "data" / folder / str(len(self._places))
-            self._places[source] = copy(source, place, self._work)
+            self._places[source] = copy_into_new_folder(source, place, self._work)
         return self._places[source]
