@@ -212,7 +212,7 @@ def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
     parties: list[dict[str, Any]] = [
         {
             "broken": [f"{n} " + "b" * 140 for n in range(7)],
-            "kept": ["k" * 60] * 12,
+            "kept": ["k" * 60] * 7,
             "excused": ["e" * 30] * 3,
             "reasons": [UndecidedReason(f"{n} " + "r" * 80, ("t" * 30,) * 3) for n in range(6)],
         },

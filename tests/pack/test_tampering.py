@@ -181,7 +181,7 @@ def declaration_changed(pack: Path, _p: Packed) -> tuple[str, str]:
 def day_added_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "bag-info.txt", "Bag-Software-Agent", "Bagging-Date: 2020-01-01\nBag-Software-Agent")
     rehash(pack)
-    return "file changed since the statement about it", "manifest-sha256.txt"
+    return "file changed since the statement about it", "bag-info.txt"
 
 
 @tamper

@@ -18,8 +18,8 @@ from drivelint.incident.words import (
     text_with_minus_signs,
 )
 from drivelint.phrases import plural
-from drivelint.result.certainty import certainty
-from drivelint.result.counts import one_finding_per_event
+from drivelint.result.certainty import POSSIBLE, SURE, certainty
+from drivelint.result.counts import representative_indices
 from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 ADVICE_VERBS: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
 """The words with which the advice at the end of a reason begins."""
 _ADVICE_PATTERN: Final = re.compile(rf": (?:{'|'.join(ADVICE_VERBS)}) .*$")
+_CERTAINTY_ORDER: Final = (SURE, None, POSSIBLE)
+"""An event is as certain as the surest of its findings; a finding that was not examined may be surer than one that is only possible."""
 _MOST_LISTED_JUDGED_TIMES: Final = 2
 LOWER_BOUND_CAUSE: Final = "lower_bound"
 """The cause code of a verdict whose measured value is a lower bound, because the data end."""
@@ -107,7 +109,11 @@ def _finding_time_text(row: Row, rule: Row, drive_start_ns: int) -> str:
 
 def _certainties_text(rows: Sequence[Row]) -> str:
     """Return in words how sure findings are, one per event; '' for verdicts without findings."""
-    found = one_finding_per_event(row for row in rows if "finding_id" in row)
+    findings = [row for row in rows if "finding_id" in row]
+    found: list[Row] = []
+    for place in sorted(set(places := representative_indices(findings))):
+        event = [row for row, other in zip(findings, places, strict=True) if other == place]
+        found.append(min(event, key=lambda row: _CERTAINTY_ORDER.index(certainty(row))))
     if not found:
         return ""
     if len(found) == 1:

@@ -142,8 +142,9 @@ def fit_conduct_lists(
 ) -> list[list[ContinuedTexts]]:
     """Cut the lists about both parties so that they fit into two columns with a common limit of characters, and return further pages.
 
-    Free space goes first to the broken rules, then to the reasons, until all are printed. If other lines need space, the lists are
-    shortened, the list of broken rules last. If a broken rule has no space, all texts without space are on the further pages.
+    Free space goes first to the broken rules, then to the reasons, until all are printed, then to the titles of rules in the reasons. If
+    other lines need space, the lists are shortened, the list of broken rules last. If a broken rule has no space, all texts without space
+    are on the further pages.
     `unused_second_rows`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
     """
     lists = [
@@ -166,12 +167,13 @@ def fit_conduct_lists(
     if spare < 0:
         parts = _parts_with_less_space(parts, -spare)
     rooms = [room for *_, room in parts]
-    for first in _FIRST_SERVED_PARTS:
-        for i, (told, name, room) in enumerate(parts):
-            if name == first:
-                more = min(_least_characters(told[name], name) - room, max(spare, 0))
-                rooms[i] += more
-                spare -= more
+    for wanted_characters in (_least_characters, _full_characters):
+        for first in _FIRST_SERVED_PARTS:
+            for i, (told, name, _) in enumerate(parts):
+                if name == first:
+                    more = min(max(wanted_characters(told[name], name) - rooms[i], 0), max(spare, 0))
+                    rooms[i] += more
+                    spare -= more
     for (told, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitted_reasons if name == "reasons" else _fitted_texts_of_part
         told[name] = fitting(told[name], name, room + max(spare, 0))
@@ -243,6 +245,11 @@ def _least_characters(texts: Sequence[Any], part: str) -> int:
         _n_characters([each.full_text for each in texts], part),
         _n_characters(_shortest_reason_texts(texts), part) + _TITLES_NOTE_CHARACTERS,
     )
+
+
+def _full_characters(texts: Sequence[Any], part: str) -> int:
+    """Return the characters that all texts of a part take, with the titles of all rules."""
+    return _n_characters([each.full_text for each in texts] if part == "reasons" else texts, part)
 
 
 def _n_characters(texts: Sequence[str], part: str) -> int:
