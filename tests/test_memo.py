@@ -8,7 +8,7 @@ import pytest
 
 from drivelint import memo
 from drivelint.catalogue import load, load_rules, rule_file
-from drivelint.catalogue.check import Query, check_query
+from drivelint.catalogue.check import SelectParts, check_query
 from drivelint.catalogue.rule import Rule
 from drivelint.errors import RuleError
 from drivelint.memo import Memo
@@ -23,21 +23,21 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def never() -> Query:
+def never() -> SelectParts:
     raise AssertionError("it is kept")
 
 
 def test_a_fact_is_found_once(home: Path) -> None:
     query = check_query(SQL, "a.sql", 1)
-    first = Memo[Query]("queries", Query)
+    first = Memo[SelectParts]("queries", SelectParts)
     assert first.find_or_compute(SQL, lambda: query) == query
     first.save()
     assert [file.name for file in home.iterdir()] == [
         f"queries-{memo.code_and_version_hash(memo.SQL_CODE_GLOBS)[:16]}.msgpack"
     ]
-    assert Memo[Query]("queries", Query).find_or_compute(SQL, never) == query
+    assert Memo[SelectParts]("queries", SelectParts).find_or_compute(SQL, never) == query
     with pytest.raises(AssertionError):
-        Memo[Query]("queries", Query).find_or_compute(f"{SQL} ", never)
+        Memo[SelectParts]("queries", SelectParts).find_or_compute(f"{SQL} ", never)
 
 
 def test_rules_are_read_and_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -313,7 +313,7 @@ def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool
     with store.workspace(200_000_000) as con:
         memory = MemoryLimit(con, 200_000_000)
         if lifted:
-            memory.lift_limit()
+            memory.raise_to_machine_limit()
         limit = con.execute("SELECT current_setting('memory_limit')").fetchall()
         con.execute("CREATE TABLE numbers AS SELECT range AS n, hash(range) AS h FROM range(4000000)")
         ((before,),) = con.execute(held).fetchall()

@@ -32,7 +32,7 @@ SMALL_TASKS = """
 from drivelint.audit import driver
 from drivelint.cli import main
 
-driver.LEAST_TASK_DRIVES = 2
+driver.SMALL_TASK_MAX_DRIVES = 2
 main()
 """
 """The command, with three tasks instead of one for the drives."""

@@ -50,11 +50,11 @@ class Road:
 
     def lanes_near(self, x: Floats, y: Floats, log_time: int) -> bytes:
         """Return the SceneUpdate with the lanes near some positions."""
-        return b"".join(self._lanelet_entity(int(i), log_time) for i in self._lanelet_numbers_near(x, y))
+        return b"".join(self._lanelet_entity(int(i), log_time) for i in self._distinct_lanelet_numbers_near(x, y))
 
     def drivable_outlines(self, x: Floats, y: Floats) -> Iterator[tuple[str, Floats]]:
         """Yield the drivable lanes near some positions: lanelet id, and closed outline (n, 2), counterclockwise."""
-        for i in self._lanelet_numbers_near(x, y):
+        for i in self._distinct_lanelet_numbers_near(x, y):
             name, rows = str(self._names[i]), self._rows[i]
             if self._lanelet_rows[name]["drivable"]:
                 left, right = (
@@ -63,7 +63,7 @@ class Road:
                 )
                 yield name, np.concatenate([right, left[::-1], right[:1]])
 
-    def _lanelet_numbers_near(self, x: Floats, y: Floats) -> NDArray[np.int64]:
+    def _distinct_lanelet_numbers_near(self, x: Floats, y: Floats) -> NDArray[np.int64]:
         column, row = (np.floor(values / NEAR_LANES_M).astype(np.int64) for values in (x, y))
         _, first = np.unique(column * _GRID_ROWS + row, return_index=True)
         cells = np.stack([column[first], row[first]])

@@ -29,7 +29,7 @@ SUBMITTED_TASKS_PER_WORKER: Final = 4
 TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
-LEAST_TASK_DRIVES: Final = 8
+SMALL_TASK_MAX_DRIVES: Final = 8
 """Number of drives in a task if there are few drives. Results then come early, and all workers have work."""
 MOST_ATTEMPTS: Final = 3
 """A drive is quarantined after this many workers died on it. From the second attempt on it is judged alone."""
@@ -37,7 +37,7 @@ MOST_ATTEMPTS: Final = 3
 
 def max_drives_per_task(n_drives: int, capacity: int) -> int:
     """Return the largest number of drives that a task may have."""
-    return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
+    return max(SMALL_TASK_MAX_DRIVES, min(TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
 
 
 def divide_into_tasks(
@@ -60,7 +60,7 @@ def divide_into_tasks(
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            most = min(max_drives, LEAST_TASK_DRIVES) if n_cut < n_small else max_drives
+            most = min(max_drives, SMALL_TASK_MAX_DRIVES) if n_cut < n_small else max_drives
             if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part, n_cut = [], n_cut + 1

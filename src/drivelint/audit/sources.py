@@ -39,7 +39,7 @@ _LEAST_NUMBER_COLUMNS: Final = 3
 _SAMPLE_LINES: Final = 100
 _LEAST_SIMILARITY: Final = 0.8
 """From this similarity on, the name of a tag counts as a misspelt column: `maps` does, `lap` does not."""
-_BATCH_ROWS: Final = 10_000
+_MANIFEST_BATCH_ROWS: Final = 10_000
 
 
 def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
@@ -254,7 +254,7 @@ def _manifest_rows(path: Path) -> Iterator[dict[str, str]]:
     try:
         if path.suffix.lower() == ".parquet":
             with path.open("rb") as opened, pq.ParquetFile(opened) as file:
-                for batch in file.iter_batches(_BATCH_ROWS):
+                for batch in file.iter_batches(_MANIFEST_BATCH_ROWS):
                     yield from _rows_as_text(batch.to_pylist())
         else:
             with path.open("rb") as opened, pa_csv.open_csv(opened) as reader:

@@ -161,10 +161,10 @@ class AuditSummary:
         if code is ExitCode.LOSSY:
             return "judged on lossy input: parts of a log were lost"
         if code is ExitCode.NOT_JUDGED:
-            return self._not_judged_reason()
+            return self._reason_of_exit_not_judged()
         return "failures do not gate" if fail_on == "never" else f"nothing failed at or above severity {fail_on}"
 
-    def _not_judged_reason(self) -> str:
+    def _reason_of_exit_not_judged(self) -> str:
         if lost := self.n_refused + self.quarantined - self.copies_not_judged:
             return f"{lost} of {plural(self.n_contents, 'drive')} could not be judged"
         if self.beyond_limits:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ENGINE_TABLES",
-    "Query",
+    "SelectParts",
     "check_query",
     "collect_problems",
     "error_message",
@@ -37,7 +37,7 @@ Node = dict[str, Any]
 _TOO_DEEP = "too deeply nested to be checked: split it into CTEs"
 
 
-class Query(NamedTuple):
+class SelectParts(NamedTuple):
     """The parts of one SELECT.
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns`: its columns, None if it uses `*`.
@@ -117,7 +117,7 @@ def line_of_error(error: duckdb.Error, text: str) -> int | None:
 
 
 @lru_cache(maxsize=2048)  # a process may judge several times, with the same rules
-def check_query(sql: str, file: str, line: int = 1) -> Query:
+def check_query(sql: str, file: str, line: int = 1) -> SelectParts:
     """Check the SQL of one section, which begins at `line` of `file`, and return its parts.
 
     Errors: `RuleError` with file and line if the section is not exactly one SELECT, or uses an element that `allowed_sql` does not list.
@@ -136,7 +136,7 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     except RecursionError as error:
         raise RuleError(f"{text.place_at(0)}: {_TOO_DEEP}") from error
     names = frozenset(found.column_names)
-    return Query(
+    return SelectParts(
         frozenset(found.tables),
         parameters,
         _result_columns(node),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query, collect_problems, raise_problems
+from drivelint.catalogue.check import ENGINE_TABLES, SelectParts, check_query, collect_problems, raise_problems
 from drivelint.catalogue.header import Header, line_of_key, parse_header
 from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.rule_words import refuse_wrong_words
@@ -62,7 +62,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
     problems: list[str] = []
     with collect_problems(problems):
         header = parse_header(toml, str(file))
-    queries: dict[str, Query] = {}
+    queries: dict[str, SelectParts] = {}
     for name, section in sections.items():
         with collect_problems(problems):
             queries[name] = check_query(section.sql, str(file), section.sql_line)
@@ -99,7 +99,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
     )
 
 
-def _used_quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
+def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozenset[str]:
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
     declared = store.column_quantities()
     # an event table named in the header provides all its columns: only columns that other sections name count
@@ -167,7 +167,7 @@ def _event_table_section(table: str, sections: dict[str, Section], file: Path, l
 
 
 def _section_problems(
-    header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path
+    header: Header, sections: dict[str, Section], queries: dict[str, SelectParts], file: Path
 ) -> Iterator[str]:
     """Yield the problems of missing or surplus sections, and of each section's columns."""
     wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
@@ -210,7 +210,7 @@ def _column_problems(
         yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed_columns)}")
 
 
-def _condition_problems(header: Header, query: Query, where: str) -> Iterator[str]:
+def _condition_problems(header: Header, query: SelectParts, where: str) -> Iterator[str]:
     """Yield contradictions between condition and header: sense, reference, and `combine`."""
     columns = query.columns or ()
     wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
@@ -222,7 +222,7 @@ def _condition_problems(header: Header, query: Query, where: str) -> Iterator[st
         yield (f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
-def _reads_problems(header: Header, queries: dict[str, Query], place_of_reads: str) -> Iterator[str]:
+def _reads_problems(header: Header, queries: dict[str, SelectParts], place_of_reads: str) -> Iterator[str]:
     """Yield differences between the header's `place_of_reads` and the tables that the SQL reads. `place_of_reads`: `file:line` of that
     key."""
     given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
@@ -237,7 +237,7 @@ def _reads_problems(header: Header, queries: dict[str, Query], place_of_reads: s
         yield (f"{place_of_reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
-def _param_problems(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
+def _param_problems(header: Header, queries: dict[str, SelectParts], file: Path, toml: str) -> Iterator[str]:
     for query in queries.values():
         if strange := sorted(query.parameters - header.params.keys()):
             name = strange[0]
@@ -264,7 +264,7 @@ def _refuse_wrong_words(header: Header, sections: dict[str, Section], file: Path
     refuse_wrong_words({name: section.sql for name, section in sections.items()}, header.params, place)
 
 
-def _reason_problems(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
+def _reason_problems(header: Header, queries: dict[str, SelectParts], file: Path, toml: str) -> Iterator[str]:
     """Yield the problems of reason codes: codes without a text, texts without their arguments, and unused codes."""
     known = {**texts_of_shared_codes(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]

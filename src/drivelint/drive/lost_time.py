@@ -20,7 +20,7 @@ MOST_STRETCHES: Final = 200
 """If there are more stretches than this, they are reported and judged as a single one, from the first to the last."""
 LATEST_CREDIBLE_NS: Final = 1 << 62
 """The year 2116: a later time means a broken clock, and is not used as a bound."""
-_FRAMES_FOR_CLOCK_OFFSET: Final = 50
+_FRAMES_USED_EACH_SIDE: Final = 50
 """How many frames before and after a stretch are used to estimate the offset between the two clocks of the log."""
 
 
@@ -104,7 +104,7 @@ def _span_in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> 
     order = np.argsort(frames.log_ns, kind="stable")
     log_ns, t_ns = frames.log_ns[order].astype(np.int64), frames.t_ns[order]
     at = np.searchsorted(log_ns, [0 if since is None else since, np.iinfo(np.int64).max if until is None else until])
-    beside = slice(max(0, int(at[0]) - _FRAMES_FOR_CLOCK_OFFSET), int(at[1]) + _FRAMES_FOR_CLOCK_OFFSET)
+    beside = slice(max(0, int(at[0]) - _FRAMES_USED_EACH_SIDE), int(at[1]) + _FRAMES_USED_EACH_SIDE)
     late = (log_ns - t_ns)[beside]
     return (
         None if since is None else since - int(late.max()),

@@ -65,7 +65,7 @@ def _sorted_margin_batches(con: duckdb.DuckDBPyConnection, memory: MemoryLimit) 
                 yield block
                 sent += block.num_rows
         except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader raises OSError for every error of the database
-            if not memory.lift_limit():
+            if not memory.raise_to_machine_limit():
                 raise
         else:
             return

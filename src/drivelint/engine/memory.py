@@ -48,7 +48,7 @@ class MemoryLimit:
         """Limit parts to half the pairs of the part that ran out of memory."""
         self.pairs_per_part = max(1, pairs // 2)
 
-    def lift_limit(self) -> bool:
+    def raise_to_machine_limit(self) -> bool:
         """Raise the database's memory limit to what the machine allows; return False if it was raised before."""
         if not self.limited or self._limit is None:
             return False
@@ -90,7 +90,7 @@ class MemoryLimit:
             with store.uniform_memory_errors():
                 return job(self._con)
         except duckdb.OutOfMemoryException:
-            if not self.lift_limit():
+            if not self.raise_to_machine_limit():
                 raise
             return job(self._con)
 

@@ -151,7 +151,7 @@ class JudgingSession:
                 raise
             except duckdb.OutOfMemoryException:
                 # data of a single ego that cannot be spilled to disk may use all memory of the machine
-                if len(drives) > 1 or not self._memory.lift_limit():
+                if len(drives) > 1 or not self._memory.raise_to_machine_limit():
                     raise
         ids = [drive.trace.drive_id for drive in drives]
         with ExitStack() as undo:

@@ -232,7 +232,7 @@ class Evaluation:
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
         if rule.per_object and "applies" not in rule.sections and "lost_object" not in self._empty_tables:
-            self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
+            self._execute(invariant.insert_unknowns_of_lost_objects_sql(rule, partial, self._check_engagement), binding)
         if binding.no in self._rules_outside_conditions and _is_shipped(binding):
             return None
         if self._has_first_pass(binding):

@@ -112,7 +112,7 @@ def _steps_with_episode(source: str) -> str:
     return statement("judging/steps_with_episode", source=source)
 
 
-def lost_objects_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:
+def insert_unknowns_of_lost_objects_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:
     """Return the SQL that appends one unknown outcome per object that may have been present after its track ended."""
     return rule_statement(
         "outcome_of_lost_objects",

@@ -50,7 +50,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
 
 def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
     """Create the table of the steps that rules must not judge, because a quantity that they use is doubtful there."""
-    with store.registered(con, {"_rule_quantity": _quantity_rows(bindings)}):
+    with store.registered(con, {"_rule_quantity": _rows_of_used_quantity_names(bindings)}):
         con.execute(statement("judging/doubted"))
 
 
@@ -85,7 +85,7 @@ def _required_signal_rows(bindings: Sequence[Binding]) -> pa.Table:
     ])  # fmt: skip
 
 
-def _quantity_rows(bindings: Sequence[Binding]) -> pa.Table:
+def _rows_of_used_quantity_names(bindings: Sequence[Binding]) -> pa.Table:
     pairs = [(b.no, quantity) for b in bindings for quantity in sorted(b.rule.quantities)]
     return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITY_SCHEMA)
 

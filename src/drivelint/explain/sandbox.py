@@ -85,7 +85,7 @@ class Sandbox:
             for of_the_map in (True, False):
                 derive(self.con, self._rule.reads, are_map_tables=of_the_map)
         except duckdb.OutOfMemoryException:
-            if not self._memory.lift_limit():
+            if not self._memory.raise_to_machine_limit():
                 raise
             store.recreate_empty(self.con, derivations())
             self._derive_tables()

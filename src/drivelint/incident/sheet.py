@@ -154,7 +154,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "sure": _certainty_values(case),
         "rests": _sudden_contact_sentence(case, motion),
         "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
-        "quality": _first_warning_texts(case),
+        "quality": _fitted_log_warnings(case),
         "again": matching_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
         "source": case.source,
         "commands": reproducing_commands(
@@ -269,7 +269,7 @@ def _warning_texts(case: Case) -> list[str]:
     return [check["message"] for check in case.finding.drive["quality"] if check["severity"] != "info"]
 
 
-def _first_warning_texts(case: Case) -> FittedTexts:
+def _fitted_log_warnings(case: Case) -> FittedTexts:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
     shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warning_texts(case)]

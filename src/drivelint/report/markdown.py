@@ -76,7 +76,7 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         titles={standing: title for standing, title in descriptions.DIFF_STATUS_TITLES.items() if standing != "new"},
         warnings=list(descriptions.waiver_warnings(gate)) if gate else [],
         lost=result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist(),
-        open=_undecided_reasons(result),
+        open=_reasons_of_unknowns_and_errors(result),
     )
     room = list(accumulate(len(part) + 2 for part in parts))
     kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
@@ -149,7 +149,7 @@ def markdown_code(text: str) -> str:
     return f"{fence}{space}{plain}{space}{fence}" if plain else ""
 
 
-def _undecided_reasons(result: Result) -> list[dict[str, Any]]:
+def _reasons_of_unknowns_and_errors(result: Result) -> list[dict[str, Any]]:
     """Return the reasons of unknown verdicts and errors, with their rules and numbers of verdicts, the most frequent first."""
     rows = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "rule_id"])
     found = [

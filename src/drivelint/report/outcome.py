@@ -133,7 +133,7 @@ def headline(result: Result) -> Headline:
     else:
         parts = [
             HeadlinePart(_findings_words(result, rows)),
-            *_worse_findings_parts(result.gate),
+            *_known_but_worse_findings_parts(result.gate),
             *_contact_parts(result, rows, rules),
         ]
         doubtful = sum(bool(doubt_words(row)) for row in rows)
@@ -251,7 +251,7 @@ def _findings_words(result: Result, rows: Sequence[Row]) -> str:
     return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
 
 
-def _worse_findings_parts(gate: Gate | None) -> list[HeadlinePart]:
+def _known_but_worse_findings_parts(gate: Gate | None) -> list[HeadlinePart]:
     """Return the sentence's part about known findings with a worse margin than in the baseline; [] if there are none."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
     n = n_findings(e for e in entries if gate and e.worse and gate.status_at_gate(e.finding_id) == "known")

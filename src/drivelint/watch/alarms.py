@@ -134,7 +134,7 @@ class AlarmLog:
         self._standing = [
             each
             for each in self._standing
-            if not each.is_over or each.t_end_ns + self._gap_ns(each) >= window.t_start_ns
+            if not each.is_over or each.t_end_ns + self._allowed_gap_ns(each) >= window.t_start_ns
         ]
         return AlarmChanges(new, over, withdrawn)
 
@@ -163,17 +163,17 @@ class AlarmLog:
         """Return the alarms whose rule is kept again; an alarm that continues later can be over a second time."""
         found = []
         for each in self._standing:
-            ended = now_ns > each.t_end_ns + self._gap_ns(each)
+            ended = now_ns > each.t_end_ns + self._allowed_gap_ns(each)
             if ended and not each.is_over:
                 found.append(each)
             each.is_over = ended
         return found
 
-    def _gap_ns(self, alarm: Alarm) -> int:
+    def _allowed_gap_ns(self, alarm: Alarm) -> int:
         return self._gaps_ns[alarm.row["rule_id"]]
 
     def _is_same(self, alarm: Alarm, row: Row) -> bool:
-        return finding_key(alarm.row) == finding_key(row) and alarm.is_continued_by(row, self._gap_ns(alarm))
+        return finding_key(alarm.row) == finding_key(row) and alarm.is_continued_by(row, self._allowed_gap_ns(alarm))
 
     def assign_findings(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
         """Assign the findings of the whole log to the alarms, and return the findings without an alarm.

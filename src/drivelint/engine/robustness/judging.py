@@ -159,7 +159,7 @@ class RobustnessJudge:
                 for window in chunk:
                     self._judge_windows([window])
                 return
-            if isinstance(error, duckdb.OutOfMemoryException) and self._memory.lift_limit():
+            if isinstance(error, duckdb.OutOfMemoryException) and self._memory.raise_to_machine_limit():
                 self._judge_windows(chunk)
                 return
             for question in chunk[0].questions:

@@ -78,7 +78,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
             name = element.get("id") or f"in line {element.sourceline}"
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
     signs.report_problems(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
-    _report_unread_types(root, quality)
+    _report_unread_markings_and_types(root, quality)
     _remove_contradicted_road_types(root, built, quality)
     _set_junctions(root, built)
     lanes = build_lanes(built, request.offset, quality)
@@ -172,7 +172,7 @@ def _remove_contradicted_road_types(root: etree._Element, lanes: Sequence[Bounde
         quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 
-def _report_unread_types(root: etree._Element, quality: MapQuality) -> None:
+def _report_unread_markings_and_types(root: etree._Element, quality: MapQuality) -> None:
     """Report the markings and lanelet types that are not read."""
     for tag, known, what in (
         ("lineMarking", _MARKINGS, "markings"),

@@ -32,7 +32,7 @@ _LABEL_DISTANCE_PERCENT: Final = 20.0  # percent: the width of a label on a phon
 _LEAST_BAND_PERCENT: Final = 0.6  # percent: the least width of a band
 _VERDICTS_WORST_FIRST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONE_STARTS_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
-_DOT_SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
+_DOT_SHAPE_PER_PROFILE: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
 _MOST_LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
@@ -162,7 +162,9 @@ def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[
     x, y = Axis(0.0, far, 48.0, _PLOT_W - 12.0), Axis(0.0, far, _PLOT_H - 40.0, 10.0)
     closing = [p["spare_m"] / p["spare_s"] for _, p in known if p["spare_s"]]
     v = statistics.median(closing) if closing else 0.0
-    shapes = {profile: _DOT_SHAPES[min(n, len(_DOT_SHAPES) - 1)] for n, profile in enumerate(profiles)}
+    shapes = {
+        profile: _DOT_SHAPE_PER_PROFILE[min(n, len(_DOT_SHAPE_PER_PROFILE) - 1)] for n, profile in enumerate(profiles)
+    }
     rows = {id(row): row for row, _ in known}.values()
     return {
         "areas": _zone_areas(x, y, far, v),

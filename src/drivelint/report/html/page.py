@@ -56,7 +56,7 @@ MAX_DRIVE_SECTIONS: Final = 60
 MAX_UNFOLDED_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
 
-MAX_DETAILED_DRIVES: Final = 20
+BRIEF_ABOVE_DRIVES: Final = 20
 """If the result has more drives, the timelines name the rules that were always kept instead of drawing them."""
 
 _VERDICT_WORDS: Final = {
@@ -158,7 +158,7 @@ def content(result: Result) -> dict[str, Any]:
         ],
         "sections": sections,
         "n_charts": MAX_CHARTS,
-        "brief": len(drives) > MAX_DETAILED_DRIVES,
+        "brief": len(drives) > BRIEF_ABOVE_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
