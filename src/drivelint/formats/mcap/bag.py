@@ -121,11 +121,11 @@ def _metadata_error(path: Path, error: Exception) -> TraceError:
 
 
 def missing_message_findings(
-    path: Path, parts: Sequence[Container], is_read: Callable[[str], bool]
+    path: Path, parts: Sequence[Container], is_read: Callable[[str, str], bool]
 ) -> list[QualityFinding]:
     """Return a finding for each topic of which the bag's `metadata.yaml` counts more messages than its files contain.
 
-    `parts`: the bag's files, read to their ends. `is_read`: whether messages of a kind, as `message_kind` returns it, are read.
+    `parts`: the bag's files, read to their ends. `is_read`: whether messages of a topic and kind, as `message_kind` returns it, are read.
     If bytes were lost, they explain missing messages, so there is no finding.
     """
     if not path.is_dir() or any(part.losses.has_lost_bytes for part in parts):
@@ -136,7 +136,7 @@ def missing_message_findings(
             counts[part.channels[number].topic] += n
     findings = []
     for topic, kind, counted in _topics_with_counts(_bag_metadata(path)):
-        if counted > counts[topic] and is_read(message_kind(kind)):
+        if counted > counts[topic] and is_read(topic, message_kind(kind)):
             n = counted - counts[topic]
             message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {counts[topic]}: {n} are lost"
             findings.append(QualityFinding("index_mismatch", "error", message, n))

@@ -95,7 +95,7 @@ class Log:
                     )
             parts.append(container)
         self.findings += [
-            *missing_message_findings(self.path, parts, MESSAGE_TYPES.__contains__),
+            *missing_message_findings(self.path, parts, lambda _, kind: kind in MESSAGE_TYPES),
             *self.unread.findings(),
         ]
         self.lost_times = lost_times_of_parts([(part.path, part.losses) for part in parts])

@@ -48,10 +48,12 @@ class MessageMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A whole mapping file.
 
     `message_files`: a folder, relative to the mapping, with files `PACKAGE/msg/NAME.msg`, for logs without message definitions.
+    `one_frame`: all positions are in one fixed frame, whatever frames the messages name.
     """
 
     ros: list[MappedTopic]
     message_files: str | None = None
+    one_frame: bool = False
     description: str = ""
     frame: Frame = Frame()
     ego: EgoChoice = EgoChoice()

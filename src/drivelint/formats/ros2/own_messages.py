@@ -15,23 +15,27 @@ import pyarrow as pa
 
 from drivelint.drive.trace import EARLIEST_UTC_NS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
+from drivelint.formats.coordinate_frames import clean_frame_name
 from drivelint.formats.mcap import bag
+from drivelint.formats.mcap.bag import missing_message_findings
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.ros2 import own_mapping
 from drivelint.formats.ros2.cdr import Decoder
+from drivelint.formats.ros2.ego_frame import EGO_FRAMES
 from drivelint.formats.ros2.merge import concatenate_states
 from drivelint.formats.ros2.objects import stamps
+from drivelint.formats.ros2.silence import silences
 from drivelint.formats.ros2.types import parse_definition, short_type_name
 from drivelint.formats.sqlite_bag.definitions import definition_in_files
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import read_sheet
 from drivelint.formats.tables.sheets import ParquetSheet
-from drivelint.phrases import hint
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
@@ -71,11 +75,14 @@ def read(probe: Probe) -> Recording:
     messages = _MappedMessages(path, message_mapping, file.parent)
     for part in bag.bag_files(path):
         messages.read(part)
+    messages.check()
     recordings = []
     for topic in message_mapping.ros:
         sheet = MessageSheet(path, messages.table(topic), messages.other_fields(topic))
         recordings.append(read_sheet(path, file.stem, message_mapping.table_mapping(topic), sheet))
     recording = recordings[0]
+    _refuse_shared_ids(path, message_mapping, recordings)
+    recording.names_indicator = any(each.names_indicator for each in recordings)
     for other in recordings[1:]:
         recording.states = concatenate_states(*_with_same_columns(recording.states, other.states))
         recording.findings += [each for each in other.findings if each not in recording.findings]
@@ -104,38 +111,96 @@ class _MappedMessages:
         self._trees = {topic.topic: _decoded_fields(topic, message_mapping) for topic in message_mapping.ros}
         self._parts: dict[str, list[tuple[Table, Times]]] = {}
         self._fields: dict[str, list[str]] = {}
+        self._containers: list[Container] = []
         self.findings: list[QualityFinding] = []
         self.lost_times: list[LostTime] = []
 
     def read(self, file: Path) -> None:
         """Decode a file of the log."""
         container = recorded_file(file)
-        decoders: dict[str, Decoder] = {}
+        decoders: dict[tuple[str, int], Decoder] = {}
 
         def mapped_topic(channel: Channel, schema: Schema) -> str | None:
-            if channel.topic in self._topics and channel.topic not in decoders:
-                decoders[channel.topic] = self._decoder(file, channel, schema)
+            if channel.topic in self._topics and (channel.topic, channel.schema_id) not in decoders:
+                decoders[channel.topic, channel.schema_id] = self._decoder(file, channel, schema)
             return channel.topic if channel.topic in self._topics else None
 
         for topic, log_messages in message_batches(container, mapped_topic):
-            table, _ = decode_readable(container, log_messages, decoders[topic].table)
+            decoder = decoders[topic, log_messages[0].channel.schema_id]
+            table, _ = decode_readable(container, log_messages, decoder.table)
             if table is not None:
-                t_ns, stamped = stamps(table, self._topics[topic].time)
-                if not stamped.all():
-                    raise TraceError(
-                        f"{self._path}: topic {topic!r} has no time {self._topics[topic].time!r}: set time"
-                    )
-                self._parts.setdefault(topic, []).append((table, t_ns))
+                self._parts.setdefault(topic, []).append((table, self._times(topic, table)))
+        self._containers.append(container)
         self._add_losses(container)
+
+    def check(self) -> None:
+        """Compare the topics, after all files: messages that are missing, and topics of road users that are silent while others continue.
+
+        Errors: `TraceError` if the topics have different clocks or frames.
+        """
+        times = {topic: np.concatenate([t_ns for _, t_ns in parts]) for topic, parts in self._parts.items()}
+        if (
+            times
+            and max(t_ns.min() for t_ns in times.values())
+            > min(t_ns.max() for t_ns in times.values()) + _TOPICS_APART_NS
+        ):
+            raise TraceError(
+                f"{self._path}: the times of {name_list(sorted(times))} do not overlap: name other fields with time"
+            )
+        self._refuse_different_frames()
+        missing = missing_message_findings(self._path, self._containers, lambda topic, _: topic in self._topics)
+        self.findings += missing
+        self.lost_times += [LostTime(None, None, each.message) for each in missing]
+        for topic, t_ns in times.items():
+            others = [other_ns for other, other_ns in times.items() if other != topic]
+            if self._topics[topic].items is not None and others:
+                self.lost_times += silences(topic, t_ns, np.concatenate(others))
+
+    def _times(self, topic: str, table: Table) -> Times:
+        """Return the times of a batch. Errors: `TraceError` if a message has none, or its unit is not known."""
+        field = self._topics[topic].time
+        t_ns, stamped = stamps(table, field)
+        if not stamped.all():
+            raise TraceError(f"{self._path}: topic {topic!r} has no time {field!r}: set time")
+        if field in table.columns and table.columns[field].dtype.kind != "f":
+            raise TraceError(
+                f"{self._path}: topic {topic!r}: {field!r} is a whole number, whose unit is not known: set time to a field of "
+                "builtin_interfaces/Time, or of seconds as a floating-point number"
+            )
+        if (t_ns <= 0).any() and t_ns.max() >= EARLIEST_UTC_NS:
+            raise TraceError(
+                f"{self._path}: topic {topic!r} has messages whose {field!r} is 0: name another field with time"
+            )
+        return t_ns
+
+    def _refuse_different_frames(self) -> None:
+        """Raise `TraceError` if the messages name several frames, or a frame of the vehicle: transforms are not applied."""
+        if self._message_mapping.one_frame:
+            return
+        recorded = {
+            clean_frame_name(frame.decode("utf-8", "replace"))
+            for topic, parts in self._parts.items()
+            for table, _ in parts
+            for frame in np.unique(table.columns.get(_frame_field(self._topics[topic]), np.zeros(0, "S1"))).tolist()
+        } - {""}
+        if len(recorded) > 1 or any(frame.rsplit("/", maxsplit=1)[-1] in EGO_FRAMES for frame in recorded):
+            raise TraceError(
+                f"{self._path}: positions are in {name_list(sorted(recorded))} by the messages, but a mapping needs one fixed frame: "
+                "publish them in map or odom, or set one_frame = true in the mapping if they are in one nevertheless"
+            )
 
     def table(self, topic: MappedTopic) -> pa.Table:
         """Return the rows of a topic. Errors: `TraceError` if the log has no message on it."""
         if topic.topic not in self._parts:
             known = hint(topic.topic, bag.kinds_by_topic(self._path))
             raise TraceError(f"{self._path}: no message on topic {topic.topic!r}, which the mapping names: {known}")
-        return pa.concat_tables(
-            [_batch_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]]
-        )
+        rows = [_batch_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]]
+        try:
+            return pa.concat_tables(rows, promote_options="default")
+        except pa.ArrowInvalid as error:
+            raise TraceError(
+                f"{self._path}: topic {topic.topic!r} has messages of several types, whose fields differ: give a log with one of them"
+            ) from error
 
     def other_fields(self, topic: MappedTopic) -> list[str]:
         """Return the fields of a topic's actors that the mapping does not name."""
@@ -172,6 +237,24 @@ class _MappedMessages:
             self.lost_times.append(lost._replace(since_ns=None, until_ns=None))
 
 
+def _frame_field(topic: MappedTopic) -> str:
+    """Return the field with the name of the frame, beside the time in a header."""
+    return f"{topic.time.rpartition('.')[0]}.frame_id".removeprefix(".")
+
+
+def _refuse_shared_ids(path: Path, message_mapping: MessageMapping, recordings: Sequence[Recording]) -> None:
+    """Raise `TraceError` if two topics have actors with the same id: their states would become one track."""
+    topic_by_id: dict[str, str] = {}
+    for topic, recording in zip(message_mapping.ros, recordings, strict=True):
+        for actor_id in recording.states.ids:
+            if actor_id in topic_by_id:
+                raise TraceError(
+                    f"{path}: the topics {topic_by_id[actor_id]!r} and {topic.topic!r} both have an actor {actor_id!r}: "
+                    "map one of them, or a field whose ids differ"
+                )
+            topic_by_id[actor_id] = topic.topic
+
+
 def _field_paths(types: Types, kind: str, prefix: str) -> Iterator[str]:
     """Yield the paths of the fields of a message and of the messages in it."""
     for member in types[kind]:
@@ -190,7 +273,8 @@ def _decoded_fields(topic: MappedTopic, message_mapping: MessageMapping) -> Fiel
     ]
     prefix = f"{topic.items}." if topic.items else ""
     tree: dict[str, Any] = {}
-    for path in (*(f"{topic.time}.{part}" for part in _STAMP_MEMBERS), *(f"{prefix}{name}" for name in names)):
+    times = [f"{topic.time}.{part}" for part in _STAMP_MEMBERS]
+    for path in (*times, _frame_field(topic), *(f"{prefix}{name}" for name in names)):
         *above, last = path.split(".")
         at = tree
         for name in above:
