@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing, suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -96,6 +96,76 @@ def test_a_file_that_was_not_closed_names_the_command_that_closes_it(log: Path, 
     text = refusal(log)
     assert f"its recorder did not close it, and {beside.name} has messages that are not in it" in text
     assert text.endswith("'PRAGMA journal_mode = DELETE'")
+
+
+@pytest.mark.parametrize("suffix", ["-wal", "-journal"])
+def test_a_link_to_a_file_that_was_not_closed_names_the_command_for_the_file(log: Path, suffix: str) -> None:
+    """SQLite writes beside the file, not beside the link."""
+    log.with_name(log.name + suffix).write_bytes(b"1")
+    link = log.parent / "links" / "link.db3"
+    link.parent.mkdir()
+    link.symlink_to(log)
+    text = refusal(link)
+    assert f"its recorder did not close it, and {log.name}{suffix} has messages that are not in it" in text
+    assert text.endswith(f"sqlite3 {log.resolve()} 'PRAGMA journal_mode = DELETE'")
+
+
+def test_a_link_to_a_closed_file_is_read(log: Path) -> None:
+    link = log.parent / "link.db3"
+    link.symlink_to(log)
+    assert read_trace(link, IngestOptions()).tables["actor_state"].num_rows == 120
+
+
+def test_a_repaired_file_is_not_to_be_repaired_again(log: Path) -> None:
+    repaired = log.rename(log.with_name("repaired-log.db3"))
+    repaired.write_bytes(repaired.read_bytes()[:9000])
+    text = refusal(repaired)
+    assert text.endswith("): copy it again")
+    assert "repaired-repaired" not in text
+
+
+def checks(path: Path) -> dict[str, list[dict[str, Any]]]:
+    """Return check -> its rows of reading a file."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for row in read_trace(path, IngestOptions()).tables["quality"].to_pylist():
+        found.setdefault(row["check_id"], []).append(row)
+    return found
+
+
+GAP = "DELETE FROM messages WHERE id BETWEEN 21 AND 30;"
+"""The messages at 100.5 to 100.7 s, of 2 s and 80 rows in all."""
+RECOVERED = "CREATE TABLE lost_and_found_0(rootpgno INTEGER, pgno INTEGER, nfield INTEGER, id INTEGER, c0, c1, c2, c3);"
+
+
+def test_rows_that_a_repair_did_not_find_are_lost(log: Path) -> None:
+    lost = checks(change(log, GAP + RECOVERED))["lost_time"]
+    assert (
+        "log.db3: the file was repaired (it has a table lost_and_found), and rows of messages from 21 to 30 are missing: "
+        in (lost[0]["message"])
+    )
+    assert "from 0.450 s to 0.750 s is lost" in lost[0]["message"]
+    assert (
+        "rows of messages from 81 on may be missing: the recording from 1.950 s to the end is lost"
+        in lost[1]["message"]
+    )
+
+
+def test_rows_that_a_repair_did_not_find_at_the_start_are_lost(log: Path) -> None:
+    lost = checks(change(log, "DELETE FROM messages WHERE id <= 4;" + RECOVERED))["lost_time"]
+    assert (
+        "rows of messages from 1 to 4 are missing: the recording from the beginning to 0.000 s is lost"
+        in lost[0]["message"]
+    )
+
+
+def test_gaps_alone_are_reported_but_no_loss(log: Path) -> None:
+    """A user may have deleted a topic from an honest bag."""
+    assert "index_mismatch" not in checks(log)
+    found = checks(change(log, GAP))
+    assert "lost_time" not in found
+    (row,) = found["index_mismatch"]
+    assert (row["severity"], row["n"]) == ("info", 1)
+    assert row["message"].startswith("gaps in the row numbers of messages: 1: ")
 
 
 def test_the_command_closes_it(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import sqlite3
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
+LAYOUTS = pytest.mark.parametrize("types", [ros.BASE, sqlite_log.FOXY], ids=["humble", "foxy"])
 OF_THE_FILE = {"drive_id", "file_name", "sha256", "format"}
 
 
@@ -130,10 +133,50 @@ def test_inspect_lists_the_topics(tmp_path: Path) -> None:
     assert found["/carla/objects"].messages == 40
 
 
-@pytest.mark.parametrize("types", [ros.BASE, sqlite_log.FOXY], ids=["humble", "foxy"])
+@LAYOUTS
 def test_both_layouts_of_a_shape_are_told_apart(tmp_path: Path, types: dict[str, str]) -> None:
     trace = read(sqlite_log.write(tmp_path / "log.db3", messages(), types, definitions=False))
     assert tables(trace) == tables(read(ros.write(tmp_path / "log.mcap", messages(), types)))
+
+
+def pedestrians(kind: int = 4) -> list[ros.Message]:
+    """Return messages of one object each, which is where both layouts of a shape may fit."""
+    walker = ros.thing(12, 5.0, 5.0, classification=kind, shape={"type": 3, "dimensions": [1.8, 0.3]})
+    return [ros.things(t_s, walker) for t_s in ros_drive.ticks(30)]
+
+
+@LAYOUTS
+@pytest.mark.parametrize("kind", [0, 4])
+def test_both_layouts_of_a_shape_are_told_apart_by_messages_of_one_object(
+    tmp_path: Path, types: dict[str, str], kind: int
+) -> None:
+    drive = [*ros_drive.ego(), *pedestrians(kind)]
+    trace = read(sqlite_log.write(tmp_path / "log.db3", drive, types, definitions=False))
+    assert tables(trace) == tables(read(ros.write(tmp_path / "log.mcap", drive, types)))
+
+
+@LAYOUTS
+def test_a_damaged_message_leaves_the_layouts_of_a_shape_told_apart(tmp_path: Path, types: dict[str, str]) -> None:
+    path = sqlite_log.write(tmp_path / "log.db3", [*ros_drive.ego(), *pedestrians()], types, definitions=False)
+    with closing(sqlite3.connect(path)) as file:
+        ((data,),) = file.execute("SELECT data FROM messages WHERE id = 45")
+        file.execute("UPDATE messages SET data = ? WHERE id = 45", (data + bytes(40),))
+        file.commit()
+    trace = read(path)
+    assert "pedestrian" in {row["actor_class"] for row in trace.tables["actor"].to_pylist()}
+    lost = [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "lost_time"]
+    assert len(lost) == 1
+    assert "row 45 of messages" in lost[0]
+
+
+@pytest.mark.parametrize("kind", ["shape_msgs/SolidPrimitive", "derived_object_msgs/Object"])
+@pytest.mark.parametrize("used", [False, True])
+def test_topics_that_are_not_read_may_have_a_type_with_two_layouts(tmp_path: Path, kind: str, used: bool) -> None:
+    path = sqlite_log.write(tmp_path / "log.db3", [*messages(), ("/shape", kind, 200.0, {})], definitions=False)
+    with closing(sqlite3.connect(path)) as file:
+        file.execute("DELETE FROM messages WHERE timestamp = 200000000000 AND NOT ?", (used,))
+        file.commit()
+    assert read(path).tables["actor_state"].num_rows == 120
 
 
 def test_types_without_a_known_definition_are_refused_with_the_remedy(tmp_path: Path) -> None:

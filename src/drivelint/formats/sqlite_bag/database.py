@@ -8,6 +8,7 @@ from __future__ import annotations
 import sqlite3
 import struct
 from contextlib import contextmanager
+from itertools import product
 from shlex import quote
 from typing import TYPE_CHECKING, Final
 
@@ -27,6 +28,9 @@ COLUMNS_BY_TABLE: Final = {
 """Table -> the columns that are read."""
 DEFINITIONS_TABLE: Final = "message_definitions"
 _DEFINITION_COLUMNS: Final = {"topic_type", "encoding", "encoded_message_definition"}
+_LOST_ROWS_TABLE: Final = "lost_and_found"
+"""So begins the name of the table in which `.recover` of sqlite3 puts rows of unknown tables."""
+_REPAIRED_PREFIX: Final = "repaired-"
 _FILE_HEADER_BYTES: Final = 100
 _STEPS_PER_CALLBACK: Final = 100_000
 """SQLite returns to Python after so many of its steps, so that reading can be interrupted."""
@@ -66,10 +70,11 @@ def convert_errors(path: Path) -> Iterator[None]:
 
 def damage_error(path: Path, problem: str) -> TraceError:
     """Return the error for a file that cannot be read."""
-    return TraceError(
-        f"{path}: a SQLite file that is damaged or cut off ({' '.join(problem.split())}): copy it again, or repair it with "
-        f"sqlite3 {quote(str(path))} .recover | sqlite3 {quote(str(path.with_name(f'repaired-{path.name}')))}"
-    )
+    remedy = "copy it again"
+    if not path.name.startswith(_REPAIRED_PREFIX):
+        repaired = path.with_name(f"{_REPAIRED_PREFIX}{path.name}")
+        remedy += f", or repair it with sqlite3 {quote(str(path))} .recover | sqlite3 {quote(str(repaired))}"
+    return TraceError(f"{path}: a SQLite file that is damaged or cut off ({' '.join(problem.split())}): {remedy}")
 
 
 def check_pages(path: Path, connection: sqlite3.Connection) -> None:
@@ -87,6 +92,12 @@ def has_definitions(path: Path, connection: sqlite3.Connection) -> bool:
     return found is not None
 
 
+def is_repaired_with_losses(connection: sqlite3.Connection) -> bool:
+    """Return whether `.recover` of sqlite3 wrote the file, and found rows whose tables it does not know."""
+    query = "SELECT 1 FROM sqlite_master WHERE substr(name, 1, ?) = ?"
+    return connection.execute(query, (len(_LOST_ROWS_TABLE), _LOST_ROWS_TABLE)).fetchone() is not None
+
+
 def _refuse_unfinished(path: Path) -> None:
     """Raise `TraceError` for a file that is shorter than it says, or whose last changes are in another file."""
     with path.open("rb") as file:
@@ -98,12 +109,14 @@ def _refuse_unfinished(path: Path) -> None:
     said = pages * (65536 if page == 1 else page)
     if size < said:
         raise damage_error(path, f"{size} of {said} bytes")
-    for suffix in ("-wal", "-journal"):
-        beside = path.with_name(path.name + suffix)
+    # SQLite writes beside the file to which a link leads
+    places = [path, path.resolve()] if path.is_symlink() else [path]
+    for place, suffix in product(places, ("-wal", "-journal")):
+        beside = place.with_name(place.name + suffix)
         if report_searched_path(beside).is_file() and beside.stat().st_size:
             raise TraceError(
                 f"{path}: its recorder did not close it, and {beside.name} has messages that are not in it: close it with "
-                f"sqlite3 {quote(str(path))} 'PRAGMA journal_mode = DELETE'"
+                f"sqlite3 {quote(str(place))} 'PRAGMA journal_mode = DELETE'"
             )
 
 

@@ -23,12 +23,15 @@ _SEPARATOR: Final = "=" * 80
 
 
 def candidate_definitions(kind: str) -> list[str]:
-    """Return the definitions that a message type may have, each with all messages that it contains; [] for a type that is not known."""
+    """Return the definitions that a message type may have, the newest first, each with all messages that it contains.
+
+    [] for a type that is not known.
+    """
     messages, variants = _definition_tables()
     if kind not in messages:
         return []
     newest = messages | variants
-    return list(dict.fromkeys(_definition_with_members(kind, each) for each in (messages, newest)))
+    return list(dict.fromkeys(_definition_with_members(kind, each) for each in (newest, messages)))
 
 
 def definition_in_files(folder: Path, kind: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,6 +20,7 @@ from drivelint.formats.sqlite_bag.database import (
     check_pages,
     damage_error,
     has_definitions,
+    is_repaired_with_losses,
     open_database,
 )
 from drivelint.formats.sqlite_bag.definitions import candidate_definitions
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from drivelint.formats.protobuf.descriptors import FieldTree
+
 MOST_TOPICS: Final = (1 << 16) - 1
 """MCAP numbers schemas and channels with 16 bits."""
 NO_DEFINITION_ENCODING: Final = ""
@@ -35,6 +39,11 @@ NO_DEFINITION_ENCODING: Final = ""
 _MOST_SAMPLES: Final = 20
 """The definition of a type that has several is chosen by so many of its longest messages."""
 _LATEST_NS: Final = (1 << 63) - 1
+_GAPS_TEXT: Final = (
+    "gaps in the row numbers of messages: {}: rows there were deleted, or lost in a repair: "
+    "if you know of neither, copy the log again"
+)
+"""Recorders number rows without gaps, but a bag from which a user deleted a topic has gaps too: they prove no loss."""
 
 
 class RowMessage(LogMessage):
@@ -77,7 +86,8 @@ class SqliteFile(Container):
             check_pages(self.path, connection)
             self._read_topics(connection)
             rows = connection.execute("SELECT rowid, topic_id, timestamp FROM messages ORDER BY rowid")
-            n_bytes = 0
+            is_repaired = is_repaired_with_losses(connection)
+            n_bytes = last = n_gaps = 0
             for row, topic, t_ns in rows:
                 number = self._numbers.get(topic)
                 if number is None or type(t_ns) is not int or not 0 <= t_ns <= _LATEST_NS:
@@ -88,11 +98,20 @@ class SqliteFile(Container):
                 n_bytes += len(data) + 1
                 if n_bytes > size:
                     raise damage_error(self.path, f"its messages are longer than its {size} bytes")
+                if row > last + 1:
+                    n_gaps += 1
+                    if is_repaired:
+                        self._add_lost_rows(last + 1, f"to {row - 1} are")
+                last = row
                 channel = self.channels[number]
                 self.counts.add(number, t_ns)
                 self.losses.bound_by_message(t_ns)
                 is_assumed = self.schemas[channel.schema_id].name in self.assumed_kinds
                 yield (AssumedTypeMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
+        if is_repaired:
+            self._add_lost_rows(last + 1, "on may be")
+        elif n_gaps:
+            self.findings.append(QualityFinding("index_mismatch", "info", _GAPS_TEXT.format(n_gaps), n_gaps))
         message = "a SQLite file has no checksums: damage may remain undetected"
         self.findings.append(QualityFinding("unprotected", "info", message))
 
@@ -101,6 +120,11 @@ class SqliteFile(Container):
         with open_database(self.path) as connection:
             self._read_topics(connection)
         return Summary(schemas=self.schemas, channels=self.channels)
+
+    def _add_lost_rows(self, row: int, rest: str) -> None:
+        """Add as a loss the rows of messages from `row` on, which the repair of the file did not find."""
+        cause = f"the file was repaired (it has a table lost_and_found), and rows of messages from {row} {rest} missing"
+        self.losses.add(row, row, cause)
 
     def _message_data(self, connection: sqlite3.Connection, row: int) -> bytes:
         found = connection.execute("SELECT data FROM messages WHERE rowid = ?", (row,)).fetchone()
@@ -157,23 +181,28 @@ class SqliteFile(Container):
         if not known:
             return Schema(id=number, name=kind, encoding=NO_DEFINITION_ENCODING, data=b"")
         self.assumed_kinds.add(kind)
-        return (
-            next((each for each in known if self._fits_longest_messages(connection, each)), known[0])
-            if len(known) > 1
-            else known[0]
-        )
+        message_type = MESSAGE_TYPES.get(short_type_name(kind))
+        if len(known) == 1 or message_type is None:  # nothing reads messages of another type
+            return known[0]
+        samples = self._longest_messages(connection, kind, number)
+        # messages of one object also fit the oldest definition, so of those that fit equally many the newest is taken
+        return max(known, key=lambda each: self._n_fitting(each, message_type.fields, samples))
 
-    def _fits_longest_messages(self, connection: sqlite3.Connection, schema: Schema) -> bool:
-        """Return whether a definition fits the longest messages of its type, which contain most objects."""
+    def _longest_messages(self, connection: sqlite3.Connection, kind: str, schema_id: int) -> list[LogMessage]:
+        """Return the longest messages of a type, which contain most objects."""
         rows = connection.execute(
             "SELECT messages.rowid, data FROM messages JOIN topics ON topics.id = topic_id WHERE type = ? "
             "ORDER BY length(data) DESC, messages.rowid LIMIT ?",
-            (schema.name, _MOST_SAMPLES),
+            (kind, _MOST_SAMPLES),
         )
-        channel = Channel(0, "", "cdr", {}, schema.id)
-        samples = [RowMessage(channel, 0, data, row) for row, data in rows if isinstance(data, bytes)]
-        try:
-            Decoder(self.path, schema, MESSAGE_TYPES[short_type_name(schema.name)].fields).table(samples)
-        except TraceError:
-            return False
-        return True
+        channel = Channel(0, "", "cdr", {}, schema_id)
+        return [RowMessage(channel, 0, data, row) for row, data in rows if isinstance(data, bytes)]
+
+    def _n_fitting(self, schema: Schema, fields: FieldTree, samples: list[LogMessage]) -> int:
+        """Return how many of the messages a definition fits."""
+        decoder, n = Decoder(self.path, schema, fields), 0
+        for each in samples:
+            with suppress(TraceError):
+                decoder.table([each])
+                n += 1
+        return n
