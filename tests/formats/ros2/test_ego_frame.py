@@ -141,3 +141,70 @@ def test_ends_at_which_the_map_is_not_known_are_no_loss(tmp_path: Path) -> None:
     assert "ego_absent" not in quality(trace)
     late = [message for message in local if message[2] > T0 + 1.2]
     assert "frame_unresolved" in quality(seen(tmp_path, [*late, *moving("odom"), *others()]))
+
+
+def test_an_end_longer_than_the_periods_explain_stays_and_is_not_placed(tmp_path: Path) -> None:
+    """`odom` in `map` is sent at 20 Hz and ends 0.85 s before the ego; at its start it is a period late."""
+    local = [ros.transform(t_s, "map", "odom", 100.0) for t_s in ticks()[1:-17]]
+    trace = seen(tmp_path, [*local, *moving("odom"), *others()])
+    assert np.isfinite(track(trace)["x_m"]).tolist() == [True] * (N - 18) + [False] * 17
+    assert "17 poses cannot be placed" in quality(trace)["frame_unresolved"]["message"]
+    assert "no_position" in quality(trace)
+
+
+@pytest.mark.parametrize(("frame", "option"), [("base_footprint", None), ("imu_link", "imu_link")])
+def test_the_centre_of_the_box_is_not_known_in_another_frame_than_the_axle(
+    tmp_path: Path, frame: str, option: str | None
+) -> None:
+    box = autoware_log.parameters(T0, **autoware_log.PARAMETERS)
+    trace = read(autoware_log.write(tmp_path / "box.mcap", [*box, *moving(child=frame)]), ego=option)
+    assert "reference_point" in quality(trace)
+    (note,) = [note for note in trace.notes if "the ego's box is taken from" in note]
+    assert "4.89 m by 1.90 m; its centre in the ego's frame is not stated" in note
+
+
+def test_two_writers_of_the_ego_s_frame_are_refused_unless_the_user_chooses_one(tmp_path: Path) -> None:
+    """Objects in the ego's frame are placed by the chosen topic too."""
+    other = [
+        ros.transform(t_s + 0.02, "map", "base_link", 5.0, 300.0, topic="/localisation/tf")
+        for t_s in ticks(N + 1, 0.05)
+    ]
+    near = [ros.tracks(t_s, ros.track(3, 9.0, 0.0), frame="base_link") for t_s in ticks()]
+    messages = [message for each in zip(moving(), other, strict=False) for message in each]
+    why = "several topics have transforms to 'base_link', and --topic chooses one: /localisation/tf, /tf"
+    with pytest.raises(TraceError, match=why):
+        seen(tmp_path, messages)
+    trace = seen(tmp_path, [*messages, *near], topic="/tf")
+    assert track(trace)["x_m"] == pytest.approx([along(t_s)[0] for t_s in ticks()])
+    placed = [row["y_m"] for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] != "ego"]
+    assert placed == pytest.approx([along(t_s)[1] + 9.0 * math.sin(TURN) for t_s in ticks()])
+
+
+def test_the_choice_of_a_static_topic_leaves_no_other_topic_out(tmp_path: Path) -> None:
+    messages = [still("map", "odom", 100.0), *moving("odom")]
+    found = track(seen(tmp_path, messages, topic="/tf_static"))
+    assert found["x_m"] == pytest.approx([100.0 + along(t_s)[0] for t_s in ticks()])
+    assert found["x_m"] == pytest.approx(track(seen(tmp_path, messages, topic="/tf"))["x_m"])
+
+
+def test_many_child_frames_do_not_take_long(tmp_path: Path) -> None:
+    """With a pass over all transforms for each child frame, this would take many times longer."""
+    topic, kind, t_s, content = ros.transform(T0, "map", "marker")
+    (item,) = content["transforms"]
+    markers = [{**item, "child_frame_id": f"marker_{k}"} for k in range(20_000)]
+    found = track(seen(tmp_path, [(topic, kind, t_s, {"transforms": markers}), *moving()]))
+    assert found["x_m"] == pytest.approx([along(t_s)[0] for t_s in ticks()])
+
+
+def test_transforms_are_split_by_their_frames_in_the_order_of_the_log(tmp_path: Path) -> None:
+    """The rows of a chain interleave with others; a name may be a prefix of another."""
+    messages = [
+        message
+        for t_s in ticks()
+        for message in (
+            ros.transform(t_s, "odom", "base_link", *along(t_s), yaw=TURN),
+            ros.transform(t_s, "base_link", "base_link_2", 70.0),
+            ros.transform(t_s, "map", "odom", t_s),
+        )
+    ]
+    assert track(seen(tmp_path, messages))["x_m"] == pytest.approx([t_s + along(t_s)[0] for t_s in ticks()])

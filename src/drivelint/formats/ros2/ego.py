@@ -15,9 +15,11 @@ from drivelint.formats.ros2.recorded_poses import RecordedPoses, recorded_poses
 from drivelint.formats.ros2.vehicle import VehicleBox, is_axle_frame
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
-    from drivelint.arrays import Codes, Times
+    from drivelint.arrays import Codes, Indices, Times
     from drivelint.formats.ros2.cdr import Table
 
 STALE_AFTER_NS: Final = 1_000_000_000
@@ -70,18 +72,24 @@ def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static
     t_ns = stamps(items, "header.stamp")[0] if own_times else log_ns[items.parent]
     places = vectors(items, "transform.translation")
     turns = unit_quaternions(vectors(items, "transform.rotation", "xyzw"))
-    pairs = np.stack([items.column("child_frame_id").astype("S255"), items.column("header.frame_id").astype("S255")])
-    unique, which = np.unique(pairs, axis=1, return_inverse=True)
-    which = which.reshape(-1)
-    for i, (child, parent) in enumerate(unique.T.tolist()):
-        here = which == i
-        frames.add(
-            clean_frame_name(child.decode("utf-8", "replace")),
-            clean_frame_name(parent.decode("utf-8", "replace")),
-            t_ns[here],
-            Poses(places[here], turns[here]),
-            static=static,
-        )
+    for child, parent, rows in rows_by_frames(items):
+        frames.add(child, parent, t_ns[rows], Poses(places[rows], turns[rows]), static=static)
+
+
+def rows_by_frames(items: Table) -> Iterator[tuple[str, str, Indices]]:
+    """Yield child frame, parent frame and ascending rows of the transforms between them, sorted by the names as recorded."""
+    (children, child), (parents, parent) = (
+        np.unique(items.column(name), return_inverse=True) for name in ("child_frame_id", "header.frame_id")
+    )
+    pair = child.reshape(-1) * len(parents) + parent.reshape(-1)
+    order = np.argsort(pair, kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(pair[order])) + 1):
+        of_child, of_parent = divmod(int(pair[rows[0]]), len(parents))
+        yield _frame_name(children[of_child]), _frame_name(parents[of_parent]), rows
+
+
+def _frame_name(recorded: bytes) -> str:
+    return clean_frame_name(recorded.decode("utf-8", "replace"))
 
 
 def indicator_codes(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:

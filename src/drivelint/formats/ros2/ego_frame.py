@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
-from drivelint.formats.coordinate_frames import FIXED_FRAME_NAMES, Poses, clean_frame_name, unit_quaternions
+from drivelint.formats.coordinate_frames import (
+    FIXED_FRAME_NAMES,
+    MAX_INTERPOLATION_NS,
+    Poses,
+    clean_frame_name,
+    unit_quaternions,
+)
+from drivelint.formats.ros2.ego import rows_by_frames
 from drivelint.formats.ros2.objects import stamps, vectors
 from drivelint.formats.ros2.recorded_poses import recorded_poses
 from drivelint.formats.ros2.vehicle import is_axle_frame
@@ -25,20 +32,26 @@ if TYPE_CHECKING:
 EGO_FRAMES: Final = ("base_link", "base_footprint")
 """The names of the vehicle's own frame by REP 105, best first; a prefix such as `ego/` may precede them."""
 _MOST_LISTED_NAMES: Final = 4
+_MOST_DROPPED_PERIODS: Final = 2.5
+"""The recordings of two topics that go on to the end end at most so many periods of the slower one apart."""
 
 
 class EgoRows(NamedTuple):
-    """The ego's poses: the topic of their transforms, the ego's frame, and the rows, each in the parent of the moving frame."""
+    """The ego's poses: the topic of their transforms, the ego's frame, and the rows, each in the parent of the moving frame.
+
+    `has_box_centre`: whether the rows were moved to the centre that the vehicle's box states.
+    """
 
     topic: str
     frame: str
     rows: RecordedPoses
+    has_box_centre: bool
 
 
 class _Transforms(NamedTuple):
-    """All transforms to one frame, in the order of the log."""
+    """All transforms to one frame, in the order of the log. `topics`: those that have them."""
 
-    topic: str
+    topics: tuple[str, ...]
     parent: str
     static: bool
     stamp_ns: Times
@@ -73,6 +86,50 @@ def ego_rows_or_reason(
     frame = names[0]
     if sum(_name_without_prefix(name) == _name_without_prefix(frame) for name in names) > 1:
         return f"several frames may be the ego's, and --ego FRAME chooses one: {name_list(names, _MOST_LISTED_NAMES)}"
+    chain = _chain_or_reason(frame, found, ambiguous)
+    if isinstance(chain, str):
+        return chain
+    moving = chain[-1]
+    above = [moving.parent]
+    while above[-1] in found and found[above[-1]].parent not in above:
+        above.append(found[above[-1]].parent)
+    if not {_name_without_prefix(name) for name in above} & set(FIXED_FRAME_NAMES):
+        return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
+    is_axle = bool(is_axle_frame(np.array([frame.encode()]))[0])
+    centre = box.centre if box is not None and is_axle else (option_ahead_m, 0.0, 0.0)
+    rows = _rows_of_chain(chain, centre)
+    if box is not None:
+        rows.size[:] = box.size
+    return EgoRows(moving.topics[0], frame, rows, has_box_centre=box is not None and is_axle)
+
+
+def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, most_dropped_ns: int) -> RecordedPoses:
+    """Return the rows without those at the ends for which a transform above is not recorded yet or any more.
+
+    The transforms of a chain are sent at different rates, so that their recordings begin and end at different times. Longer ends than
+    that explains, or than `most_dropped_ns` or `MAX_INTERPOLATION_NS`, stay: there the ego drives on, but is not placed.
+    """
+    if not len(rows):
+        return rows
+    frame = clean_frame_name(rows.frames[0].decode("utf-8", "replace"))
+    t_ns = rows.t_ns
+    placed = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
+    if not len(placed):
+        return rows
+    above = [transform for transform in frames.chain(frame, fixed) or () if not transform.static]
+    period_ns = max((float(np.median(np.diff(each.t_ns))) for each in above if len(each.t_ns) > 1), default=0.0)
+    most_ns = min(most_dropped_ns, MAX_INTERPOLATION_NS, _MOST_DROPPED_PERIODS * period_ns)
+    first, last = placed.min(), placed.max()
+    kept = np.ones(len(rows), np.bool_)
+    if first - t_ns.min() <= most_ns:
+        kept &= t_ns >= first
+    if t_ns.max() - last <= most_ns:
+        kept &= t_ns <= last
+    return rows.take(kept)
+
+
+def _chain_or_reason(frame: str, found: dict[str, _Transforms], ambiguous: set[str]) -> list[_Transforms] | str:
+    """Return the transforms from a frame up to the first that changes, or why there are none."""
     chain: list[_Transforms] = []
     at = frame
     while True:
@@ -85,38 +142,12 @@ def ego_rows_or_reason(
         if not found[at].static:
             break
         at = found[at].parent
-    above = [chain[-1].parent]
-    while above[-1] in found and found[above[-1]].parent not in above:
-        above.append(found[above[-1]].parent)
-    if not {_name_without_prefix(name) for name in above} & set(FIXED_FRAME_NAMES):
-        return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
-    return EgoRows(chain[-1].topic, frame, _rows_of_chain(frame, chain, box, option_ahead_m))
+    if len(topics := chain[-1].topics) > 1:
+        return f"several topics have transforms to {at!r}, and --topic chooses one: {name_list(topics, _MOST_LISTED_NAMES)}"
+    return chain
 
 
-def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, most_dropped_ns: int) -> RecordedPoses:
-    """Return the rows without those at the ends for which a transform above is not recorded yet or any more, for up to `most_dropped_ns`.
-
-    The transforms of a chain are sent at different rates, so that their recordings begin and end at different times.
-    """
-    if not len(rows):
-        return rows
-    frame = clean_frame_name(rows.frames[0].decode("utf-8", "replace"))
-    t_ns = rows.t_ns
-    placed = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
-    if not len(placed):
-        return rows
-    first, last = placed.min(), placed.max()
-    kept = np.ones(len(rows), np.bool_)
-    if first - t_ns.min() <= most_dropped_ns:
-        kept &= t_ns >= first
-    if t_ns.max() - last <= most_dropped_ns:
-        kept &= t_ns <= last
-    return rows.take(kept)
-
-
-def _rows_of_chain(
-    frame: str, chain: list[_Transforms], box: VehicleBox | None, option_ahead_m: float
-) -> RecordedPoses:
+def _rows_of_chain(chain: list[_Transforms], centre: tuple[float, float, float]) -> RecordedPoses:
     moving = chain[-1]
     _, last = np.unique(moving.stamp_ns[::-1], return_index=True)  # relays repeat transforms
     kept = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))
@@ -124,16 +155,11 @@ def _rows_of_chain(
     poses = Poses(*(column[kept] for column in moving.poses))
     for each in reversed(chain[:-1]):
         poses = poses.compose(Poses(*(np.repeat(column[-1:], n, axis=0) for column in each.poses)))
-    is_axle = box is not None and bool(is_axle_frame(np.array([frame.encode()]))[0])
-    centre = box.centre if box is not None and is_axle else (option_ahead_m, 0.0, 0.0)
     placed = poses.compose(Poses(np.tile(centre, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
-    rows = recorded_poses(
+    return recorded_poses(
         (moving.stamp_ns[kept], moving.stamped[kept]), (placed.place, poses.turn), log_ns=moving.log_ns[kept],
         ids=np.full(n, b"ego"), frames=np.full(n, moving.parent.encode()), classes=np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8),
     )  # fmt: skip
-    if box is not None:
-        rows.size[:] = box.size
-    return rows
 
 
 def _transforms_by_child(
@@ -150,16 +176,12 @@ def _transforms_by_child(
             vectors(items, "transform.translation"),
             unit_quaternions(vectors(items, "transform.rotation", "xyzw")),
         )
-        children, parents = items.column("child_frame_id"), items.column("header.frame_id")
-        for child in np.unique(children).tolist():
-            here = np.flatnonzero(children == child)
-            for parent in np.unique(parents[here]).tolist():
-                rows = here[parents[here] == parent]
-                each = _Transforms(
-                    topic, _frame_name(parent), topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
-                    log_ns[items.parent[rows]], Poses(places[rows], turns[rows]),
-                )  # fmt: skip
-                parts.setdefault(_frame_name(child), []).append(each)
+        for child, parent, rows in rows_by_frames(items):
+            each = _Transforms(
+                (topic,), parent, topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
+                log_ns[items.parent[rows]], Poses(places[rows], turns[rows]),
+            )  # fmt: skip
+            parts.setdefault(child, []).append(each)
     ambiguous = {child for child, of_child in parts.items() if len({each.parent for each in of_child}) > 1}
     return {child: _join_batches(of_child) for child, of_child in parts.items()}, ambiguous
 
@@ -168,6 +190,7 @@ def _join_batches(parts: list[_Transforms]) -> _Transforms:
     moving = [part for part in parts if not part.static] or parts
     first = moving[0]
     return first._replace(
+        topics=tuple(sorted({topic for part in moving for topic in part.topics})),
         stamp_ns=np.concatenate([part.stamp_ns for part in moving]),
         stamped=np.concatenate([part.stamped for part in moving]),
         log_ns=np.concatenate([part.log_ns for part in moving]),
@@ -177,7 +200,3 @@ def _join_batches(parts: list[_Transforms]) -> _Transforms:
 
 def _name_without_prefix(name: str) -> str:
     return name.rsplit("/", maxsplit=1)[-1]
-
-
-def _frame_name(recorded: bytes) -> str:
-    return clean_frame_name(recorded.decode("utf-8", "replace"))

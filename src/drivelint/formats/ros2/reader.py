@@ -52,12 +52,14 @@ from drivelint.formats.ros2.vehicle import is_axle_frame, vehicle_box
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from drivelint.arrays import Times
     from drivelint.drive.trace import IngestOptions
+    from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
@@ -141,10 +143,17 @@ def read(path: Path, options: IngestOptions) -> Recording:
 
 def _transform_tree(log: Log, *, own_times: bool) -> TransformTree:
     frames = TransformTree()
-    for topic, (table, log_ns) in log.batches(TRANSFORMS):
+    for topic, (table, log_ns) in _transforms(log):
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     return frames
+
+
+def _transforms(log: Log) -> Iterator[tuple[str, tuple[Table, Times]]]:
+    """Yield topic, transforms and log times of each batch; of the topics that are not static, those that the user chose, if any."""
+    moving = {topic for topic in log.topics.get(TRANSFORMS, ()) if not topic.endswith(STATIC_TOPIC_SUFFIX)}
+    left = moving.difference(log.requested_topics) if moving.intersection(log.requested_topics) else ()
+    yield from ((topic, batch) for topic, batch in log.batches(TRANSFORMS) if topic not in left)
 
 
 def _nothing_to_read_error(path: Path, log: Log) -> TraceError:
@@ -188,33 +197,33 @@ def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses
     log.findings += found
     ahead_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
     rows: dict[str, RecordedPoses] = {}
-    is_centre = ahead_m != 0.0
+    has_box_centre = False
     odometry = log.select_topic([ODOMETRY], "odometry")
     for topic, batches in odometry.items():
         rows[topic] = join_batches([ros_ego.odometry_poses(table, log_ns, box, ahead_m) for table, log_ns in batches])
         if box is not None and all(is_axle_frame(table.column("child_frame_id")).all() for table, _ in batches):
             log.findings += _centre_mismatch_findings(box, ahead_m)
-            is_centre = True
+            has_box_centre = True
     if not odometry:
-        rows = _ego_rows_by_transforms(log, box, ahead_m, options.ego)
-        is_centre = is_centre or (box is not None and bool(rows))
+        rows, has_box_centre = _ego_rows_by_transforms(log, box, ahead_m, options.ego)
     if box is not None and rows:
-        log.notes.append(f"the ego's box is taken from {box.source}: {box.text()}")
-    return rows, is_centre
+        size = "{:.2f} m by {:.2f} m; its centre in the ego's frame is not stated".format(*box.size)
+        log.notes.append(f"the ego's box is taken from {box.source}: {box.text() if has_box_centre else size}")
+    return rows, has_box_centre or ahead_m != 0.0
 
 
 def _ego_rows_by_transforms(
     log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
-) -> dict[str, RecordedPoses]:
-    """Return the ego's rows by the transforms of its frame; none if there is no chain to that frame."""
-    found = ego_rows_or_reason(log.batches(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
+) -> tuple[dict[str, RecordedPoses], bool]:
+    """Return the ego's rows by the transforms of its frame, if a chain leads to it, and whether the box gave their centres."""
+    found = ego_rows_or_reason(_transforms(log), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
     if isinstance(found, str):
         log.why_no_ego = found
-        return {}
+        return {}, False
     log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
     log.add_times(found.topic, found.rows)
     log.ego_frame = found.frame
-    return {found.topic: found.rows}
+    return {found.topic: found.rows}, found.has_box_centre
 
 
 def _centre_mismatch_findings(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
