@@ -99,7 +99,7 @@ def read(path: Path, topic: str | None) -> Recording:
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
         parts.append(container)
-    findings += bag.missing_message_findings(path, parts, FIELD_TREES.__contains__)
+    findings += bag.missing_message_findings(path, parts, lambda _, kind: kind in FIELD_TREES)
     name = _choose_scene_topic(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
     recording.lost_times += lost_times_of_parts([(part.path, part.losses) for part in parts])
