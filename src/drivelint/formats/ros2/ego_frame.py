@@ -128,20 +128,22 @@ def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, m
     return rows.take(kept)
 
 
-def _chain_or_reason(frame: str, found: dict[str, _Transforms], ambiguous: set[str]) -> list[_Transforms] | str:
+def _chain_or_reason(
+    frame: str, transforms_by_child: dict[str, _Transforms], ambiguous: set[str]
+) -> list[_Transforms] | str:
     """Return the transforms from a frame up to the first that changes, or why there are none."""
     chain: list[_Transforms] = []
     at = frame
     while True:
         if at in ambiguous:
             return f"several frames have the child frame {at!r}"
-        if at not in found or len(chain) > len(found):
+        if at not in transforms_by_child or len(chain) > len(transforms_by_child):
             way = "" if at == frame else f" (the chain from it ends at {at!r})"
             return f"no transform that changes leads to {frame!r}{way}"
-        chain.append(found[at])
-        if not found[at].static:
+        chain.append(transforms_by_child[at])
+        if not transforms_by_child[at].static:
             break
-        at = found[at].parent
+        at = transforms_by_child[at].parent
     if len(topics := chain[-1].topics) > 1:
         return f"several topics have transforms to {at!r}, and --topic chooses one: {name_list(topics, _MOST_LISTED_NAMES)}"
     return chain
