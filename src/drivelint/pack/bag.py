@@ -34,7 +34,7 @@ _EXPLANATION_BY_KIND: Final = {
     "file added": "nothing in the pack lists it",
     "file removed": "it is listed, and not there",
 }
-"""What is wrong with the file of a problem, by kind."""
+"""Kind of problem -> the sentence that states what is wrong with the file."""
 
 
 class Problem(NamedTuple):

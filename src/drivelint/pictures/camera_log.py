@@ -17,20 +17,18 @@ from drivelint.formats.mcap.summary import Summary, read_index, read_summary
 from drivelint.pictures.frames import (
     FrameError,
     FramePlace,
-    VideoFrame,
     camera_name,
     camera_sort_key,
     is_camera,
     read_frame,
 )
+from drivelint.pictures.message_frames import MessageFrameSource
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from PIL.Image import Image
-
-    from drivelint.pictures.frames import EncodedImage, Frame, RawImage
+    from drivelint.pictures.frames import Frame
 
 _RECORD_HEAD: Final = struct.Struct("<BQ")
 _MESSAGE_HEAD: Final = struct.Struct("<HIQQ")
@@ -52,7 +50,7 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
     return tuple(sorted(of_camera.values(), key=camera_sort_key))
 
 
-class McapFrameSource:
+class McapFrameSource(MessageFrameSource):
     """The MCAP files of one drive, open for reading frames. Errors of all methods: `FrameError` for damaged data."""
 
     def __init__(self, files: Sequence[Path]) -> None:
@@ -100,19 +98,6 @@ class McapFrameSource:
             raise FrameError("an index that does not fit its messages")
         channel = summary.channels[place.channel]
         return read_frame(channel, summary.schemas[channel.schema_id], body[_MESSAGE_HEAD.size :])
-
-    def stamp_ns(self, place: FramePlace) -> int | None:
-        """Return when the frame at a place was taken, by its message; None: the message has no time."""
-        return self.frame(place).stamp_ns
-
-    def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:
-        """Return the image at a place; a frame of a video is decoded."""
-        image = self.frame(place).image
-        if not isinstance(image, VideoFrame):
-            return image
-        from drivelint.pictures.video import video_image
-
-        return video_image(self, topic, place)
 
     def _message_index(self, file: int, chunk: int, channel: int) -> list[tuple[int, int]]:
         """Return log time and offset of each message of a channel in a chunk."""

@@ -11,21 +11,19 @@ from drivelint.formats.sqlite_bag.reader import SqliteFile
 from drivelint.pictures.frames import (
     FrameError,
     FramePlace,
-    VideoFrame,
     camera_name,
     camera_sort_key,
     is_camera,
     read_frame,
 )
+from drivelint.pictures.message_frames import MessageFrameSource
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
     from pathlib import Path
 
-    from PIL.Image import Image
-
-    from drivelint.pictures.frames import EncodedImage, Frame, RawImage
+    from drivelint.pictures.frames import Frame
 
 
 def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
@@ -39,7 +37,7 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
     return tuple(sorted(of_camera.values(), key=camera_sort_key))
 
 
-class SqliteFrameSource:
+class SqliteFrameSource(MessageFrameSource):
     """The SQLite files of one drive, open for reading frames.
 
     Errors: `OSError` if they can no longer be opened; of all methods `FrameError` for damaged data.
@@ -83,19 +81,6 @@ class SqliteFrameSource:
         index = self._indexes[place.file]
         channel = index.channels[place.channel]
         return read_frame(channel, index.schemas[channel.schema_id], rows[0][0])
-
-    def stamp_ns(self, place: FramePlace) -> int | None:
-        """Return when the frame at a place was taken, by its message; None: the message has no time."""
-        return self.frame(place).stamp_ns
-
-    def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:
-        """Return the image at a place; a frame of a video is decoded."""
-        image = self.frame(place).image
-        if not isinstance(image, VideoFrame):
-            return image
-        from drivelint.pictures.video import video_image
-
-        return video_image(self, topic, place)
 
     def _query_rows(self, file: int, query: str, *values: str | int) -> list[tuple[int | bytes, ...]]:
         try:
