@@ -28,7 +28,7 @@ from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessageFacts, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
-from drivelint.formats.osi.heights import forget_copied_heights
+from drivelint.formats.osi.heights import forget_heights_copied_from_widths
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import name_list
@@ -257,14 +257,11 @@ def _recording(
         [str(number) for number in unique],
         actor.astype(np.int32),
         t_ns[frame],
-        {format_name: np.concatenate([numbers[format_name] for numbers in zeroed]) for format_name in zeroed[0]},
-        {
-            format_name: np.concatenate([batch.codes[format_name] for batch in batches])
-            for format_name in batches[0].codes
-        },
+        {column: np.concatenate([numbers[column] for numbers in zeroed]) for column in zeroed[0]},
+        {column: np.concatenate([batch.codes[column] for batch in batches]) for column in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
-    if copied := forget_copied_heights(states):
+    if copied := forget_heights_copied_from_widths(states):
         findings.append(copied)
     bulbs = pa.concat_tables(
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))

@@ -79,7 +79,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     objects = log.select_topic(OBJECT_CONVERTERS, "road users")
     log.unread.refuse_kinds(path, OBJECT_CONVERTERS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
-    odometry, is_centre = _ego_rows(log, options)
+    odometry, is_centre = _ego_rows_and_has_centre(log, options)
     parts |= odometry
     if not sum(map(len, parts.values())):
         raise _nothing_to_read_error(path, log)
@@ -185,7 +185,7 @@ def _topic_by_map(log: Log) -> dict[bytes, str]:
     return maps
 
 
-def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
+def _ego_rows_and_has_centre(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.

@@ -121,9 +121,9 @@ class SqliteFile(Container):
             self._read_topics(connection)
         return Summary(schemas=self.schemas, channels=self.channels)
 
-    def _add_lost_rows(self, row: int, rest: str) -> None:
+    def _add_lost_rows(self, row: int, range_and_verb: str) -> None:
         """Add as a loss the rows of messages from `row` on, which the repair of the file did not find."""
-        cause = f"the file was repaired (it has a table lost_and_found), and rows of messages from {row} {rest} missing"
+        cause = f"the file was repaired (it has a table lost_and_found), and rows of messages from {row} {range_and_verb} missing"
         self.losses.add(row, row, cause)
 
     def _message_data(self, connection: sqlite3.Connection, row: int) -> bytes:
