@@ -88,7 +88,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_times = choose_clock(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
     for topic in objects:
-        parts[topic] = _rows_with_ids(parts[topic], topic, log)
+        parts[topic] = _drop_rows_without_ids(parts[topic], topic, log)
         findings += _polygon_findings(parts[topic], topic)
     used = [sorted(distinct_values(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
@@ -262,7 +262,7 @@ def _polygon_findings(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
     return [QualityFinding("polygon_box", "info", message, n, int(rows.t_ns[rows.outlined].min()))]
 
 
-def _rows_with_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
+def _drop_rows_without_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
         return rows
