@@ -252,7 +252,7 @@ def _recording(
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
     frame = np.concatenate([batch.frame + offset for batch, offset in zip(batches, offsets, strict=False)])
     unique, actor = np.unique(np.concatenate([batch.ids for batch in batches]), return_inverse=True)
-    zeroed = _numbers_with_omitted_zeros(batches)
+    zeroed = _numbers_with_restored_zeros(batches)
     states = States(
         [str(number) for number in unique],
         actor.astype(np.int32),
@@ -296,7 +296,7 @@ def _recording(
     )
 
 
-def _numbers_with_omitted_zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
+def _numbers_with_restored_zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
     """Return the numbers of each batch, with 0 for missing coordinates if the log contains no zero.
 
     Some writers omit zeros, as proto3 does. In a log with zeros, a missing coordinate is unknown.

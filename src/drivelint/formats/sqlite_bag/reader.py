@@ -55,7 +55,7 @@ class RowMessage(LogMessage):
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
 
-class AssumedTypeMessage(RowMessage):
+class AssumedDefinitionMessage(RowMessage):
     """A message whose definition is not in its bag."""
 
     def error(self, path: Path, problem: str) -> MessageError:
@@ -107,7 +107,7 @@ class SqliteFile(Container):
                 self.counts.add(number, t_ns)
                 self.losses.bound_by_message(t_ns)
                 is_assumed = self.schemas[channel.schema_id].name in self.assumed_kinds
-                yield (AssumedTypeMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
+                yield (AssumedDefinitionMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
         if is_repaired:
             self._add_lost_rows(last + 1, "on may be")
         elif n_gaps:
