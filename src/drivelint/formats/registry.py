@@ -27,7 +27,7 @@ READER_MODULES: Final = (
     "film.reader",
     "tables.canonical",
     "d123.reader",
-    "ros2.own_reader",
+    "ros2.mapped_reader",
     "mcap.trace",
     "osi.reader",
     "scenarionet.reader",

@@ -41,7 +41,7 @@ def join_riders(
     on, under = on[order], under[order]
     first = np.flatnonzero(np.r_[True, under[1:] != under[:-1]])
     keeper, thing = on[first], under[first]
-    low, high = _extents(on, under, boxes)
+    low, high = _rider_ends_along_vehicle_axes(on, under, boxes)
     size = np.stack([boxes[name] for name in _SIZE_COLUMNS])
     low = np.fmin(np.fmin.reduceat(low, first, axis=1), -size[:, thing] / 2)
     high = np.fmax(np.fmax.reduceat(high, first, axis=1), size[:, thing] / 2)
@@ -93,7 +93,7 @@ def _relative_position(on: Indices, under: Indices, boxes: dict[str, Floats]) ->
     return rotate_vectors(x[on] - x[under], y[on] - y[under], -boxes["yaw_rad"][under])
 
 
-def _extents(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
+def _rider_ends_along_vehicle_axes(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
     """Return the lower and upper ends (3, n) of the boxes `on` along the axes of the boxes `under`, from the centres of these (m)."""
     angle = boxes["yaw_rad"][on] - boxes["yaw_rad"][under]
     cos, sin = np.abs(np.cos(angle)), np.abs(np.sin(angle))

@@ -26,8 +26,8 @@ class FolderTree(NamedTuple):
     unreadable: list[Path]
 
 
-def folder_tree(root: Path, suffixes: Collection[str]) -> FolderTree:
-    """Return the files below a folder. A missing file is listed only if its suffix is one of `suffixes`, or empty, as for a folder."""
+def folder_tree(root: Path, missing_file_suffixes: Collection[str]) -> FolderTree:
+    """Return what is below a folder. A missing file is listed only if it has one of `missing_file_suffixes`, or none, as a folder has."""
     content = FolderTree([], [], [], [])
     waiting = [root]
     inside = root.resolve()
@@ -49,9 +49,9 @@ def folder_tree(root: Path, suffixes: Collection[str]) -> FolderTree:
                     content.links.append(path)
             elif path.is_file():
                 content.files.append(path)
-                if _is_lone_dvc_pointer(path) and _may_be_log(path.with_suffix(""), suffixes):
+                if _is_lone_dvc_pointer(path) and _may_be_log(path.with_suffix(""), missing_file_suffixes):
                     content.unreadable.append(path)
-            elif entry.is_symlink() and not path.exists() and _may_be_log(path, suffixes):
+            elif entry.is_symlink() and not path.exists() and _may_be_log(path, missing_file_suffixes):
                 content.unreadable.append(path)
         content.folders.extend(below)
         waiting += reversed(below)

@@ -17,7 +17,7 @@ from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
-from drivelint.formats.ros2 import own_mapping
+from drivelint.formats.ros2 import topic_mapping
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
@@ -207,10 +207,10 @@ def _channels(path: Path, mapping: str | None) -> list[Channel]:
 
 def _mapped_topics(mapping: str | None) -> set[str]:
     """Return the topics that a mapping of messages reads; none for another mapping."""
-    if mapping is None or not own_mapping.is_message_mapping(mapping):
+    if mapping is None or not topic_mapping.is_message_mapping(mapping):
         return set()
     try:
-        return {each.topic for each in own_mapping.load(Path(mapping)).ros}
+        return {each.topic for each in topic_mapping.load(Path(mapping)).ros}
     except UsageError:
         return set()  # reading the drive reports it
 

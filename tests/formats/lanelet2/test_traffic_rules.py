@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.engine.map_fit import one_way_lanes
 from drivelint.formats import load_map, read_source
-from drivelint.formats.lanelet2.file import load_lanelet2_map
+from drivelint.formats.lanelet2.file import load_map_and_is_local
 from drivelint.formats.lanelet2.traffic_rules import speed_mps
 from drivelint.report.progress import Silent
 from drivelint.road.map_reader import MapOptions, MapTables
@@ -51,7 +51,7 @@ def test_who_may_use_the_lanelets_of_a_public_report(name: str) -> None:
     source = read_source(shared(f"{REPORTED}/{name}"))
     found = lanes(load_map(source))
     assert found == BY_PEER[name] | OTHERS
-    layers, _ = load_lanelet2_map(source, MapOptions(), MapQuality())
+    layers, _ = load_map_and_is_local(source, MapOptions(), MapQuality())
     assert len(list(layers.laneletLayer)) == 12
     for lanelet in layers.laneletLayer:
         lane_type, drivable, bidirectional = found[str(lanelet.id)]

@@ -42,8 +42,8 @@ PULL_OUT_START_OVER_LINE_M: Final = 0.06
 """How far a corner of the ego is over the centre line in the first frame of pulling out: just over 0.05 m, which counts as over it."""
 LAST_PULL_OUT_FRAME_REMAINING_M: Final = 0.11
 """How far the ego is from its offset of passing in the last frame of pulling out: just over 0.1 m, which does not count as settled."""
-MAX_FRAME_NUMBER: Final = 10_000_000
-"""46 hours at 60 frames a second: a larger number is not a frame number."""
+FRAME_NUMBER_LIMIT: Final = 10_000_000
+"""46 hours at 60 frames a second: this or a larger number is not a frame number."""
 ROAD_EXTENSION_M: Final = 400.0
 """How far the road extends beyond the ego's path, at each end."""
 
@@ -116,7 +116,7 @@ def _distances_in_table(
         raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
     sheet.load(columns)
     number, bad = sheet.numbers_and_bad(film.frames.column)
-    bad |= ~(np.abs(number) < MAX_FRAME_NUMBER) | (number != np.floor(number))
+    bad |= ~(np.abs(number) < FRAME_NUMBER_LIMIT) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
     if not len(frames):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _EARTH_RADIUS_M = 6_378_137.0
 
 
-def load_lanelet2_map(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
+def load_map_and_is_local(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
     """Return the library's map, and whether its coordinates are local; elements that the library cannot read are in `quality`.
 
     Errors: `MapError` if the library is not installed, the file is not a Lanelet2 map, or latitude and longitude of the log's

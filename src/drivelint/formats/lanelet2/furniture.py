@@ -32,7 +32,7 @@ def furniture_rows(
     return {
         "traffic_signal": _signal_rows(layers, lanes, offset),
         "stop_line": _stop_line_rows(layers, lanes, offset, quality),
-        "crossing": crossings(_crossing_lanes(layers, lanes), lanes, offset, quality),
+        "crossing": crossings(_crosswalks(layers, lanes), lanes, offset, quality),
     }
 
 
@@ -155,7 +155,7 @@ def _lanes_by_stop_line(layers: Any) -> dict[int, set[str]]:
     return found
 
 
-def _crossing_lanes(layers: Any, lanes: Sequence[BoundedLane]) -> Iterator[BoundedLane]:
+def _crosswalks(layers: Any, lanes: Sequence[BoundedLane]) -> Iterator[BoundedLane]:
     """Yield the crosswalks, except those that their tags make lanes."""
     driven = {lane.lanelet_id for lane in lanes}
     for x in sorted(layers.laneletLayer, key=lambda x: x.id):

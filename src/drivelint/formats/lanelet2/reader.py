@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
-from drivelint.formats.lanelet2.file import attribute, line_points, load_lanelet2_map
+from drivelint.formats.lanelet2.file import attribute, line_points, load_map_and_is_local
 from drivelint.formats.lanelet2.furniture import furniture_rows
 from drivelint.formats.lanelet2.traffic_rules import TrafficRules, limit_text
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
@@ -34,10 +34,10 @@ _LEFT_DRIVING_NATIONS = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables.
 
-    Errors: as `file.load_lanelet2_map`, and `MapError` if no lanelet can be built.
+    Errors: as `file.load_map_and_is_local`, and `MapError` if no lanelet can be built.
     """
     quality = MapQuality()
-    layers, local = load_lanelet2_map(source, request, quality)
+    layers, local = load_map_and_is_local(source, request, quality)
     lanes = build_lanes(_lanes(layers, quality), request.offset, quality)
     if not lanes:
         raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
@@ -93,16 +93,16 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             limits=limits, limit_source="sign" if readable else "unread",
         )  # fmt: skip
         left, right = x.leftBound, x.rightBound
-        lane.left_id, lane.left_against = _neighbour(
+        lane.left_id, lane.left_against = _neighbour_id_and_against(
             x, rights[_bound_key(left)], lefts[_bound_key(left, is_reversed=True)]
         )
-        lane.right_id, lane.right_against = _neighbour(
+        lane.right_id, lane.right_against = _neighbour_id_and_against(
             x, lefts[_bound_key(right)], rights[_bound_key(right, is_reversed=True)]
         )
         yield lane
 
 
-def _neighbour(
+def _neighbour_id_and_against(
     lanelet: Any, same_way_lanes: Sequence[Any], other_way_lanes: Sequence[Any]
 ) -> tuple[str | None, bool | None]:
     """Return the neighbour across a line, and whether it is driven the other way.

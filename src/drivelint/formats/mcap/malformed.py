@@ -27,13 +27,13 @@ def decode_readable(
     Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
 
-    def decode_credible_times(batch: list[LogMessage]) -> T:
+    def decode_if_times_credible(batch: list[LogMessage]) -> T:
         if max(log_message.log_time_ns for log_message in batch) > LATEST_CREDIBLE_NS:
             late = next(log_message for log_message in batch if log_message.log_time_ns > LATEST_CREDIBLE_NS)
             raise late.error(container.path, "its log time is not in this or the next century")
         return decode(batch)
 
-    decoded, malformed = decode_without_malformed(log_messages, decode_credible_times)
+    decoded, malformed = decode_without_malformed(log_messages, decode_if_times_credible)
     for k, why in malformed.items():
         container.losses.add_undecodable_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
     return decoded, [log_message for k, log_message in enumerate(log_messages) if k not in malformed]

@@ -127,9 +127,9 @@ class OriginalFile:
         inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
         return message_index((*_MESSAGE_HEADER.unpack_from(body), at) for _, at, body in inside)
 
-    def message_index_header(self, record: Record) -> tuple[int, int]:
-        """Return channel and number of entries of a message index record."""
-        channel, length = _MESSAGE_INDEX_HEADER.unpack_from(self._view, record.body_at)
+    def channel_and_n_messages(self, message_index: Record) -> tuple[int, int]:
+        """Return the channel of a message index record, and the number of messages in it."""
+        channel, length = _MESSAGE_INDEX_HEADER.unpack_from(self._view, message_index.body_at)
         return channel, length // 16
 
     def message_header(self, record: Record) -> tuple[int, int, int]:
@@ -153,7 +153,7 @@ class OriginalFile:
             elif record.opcode == Opcode.MESSAGE:
                 messages += 1
             elif record.opcode == Opcode.MESSAGE_INDEX and behind_chunk:
-                channel_id, n = self.message_index_header(record)
+                channel_id, n = self.channel_and_n_messages(record)
                 indexed_channels.add(channel_id)
                 messages += n
             else:

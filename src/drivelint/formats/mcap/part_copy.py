@@ -193,7 +193,7 @@ class PartCopy:
         if self._chunk is None or not self._original.has_complete_indexes:
             self._skip_record(record)
             return
-        channel, n = self._original.message_index_header(record)
+        channel, n = self._original.channel_and_n_messages(record)
         self._chunk[1].message_index_offsets[channel] = self._offset_in_copy(record.at)
         self._chunk[1].message_index_length += record.end - record.at
         self._sink.counts[channel] += n

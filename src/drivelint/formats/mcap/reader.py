@@ -148,7 +148,7 @@ class Container:
             index = read_summary(view) if footer is not None else Summary()
         self._check_data_end(len(view), has_footer=footer is not None, has_index=bool(index.chunks))
         self._check_index(index)
-        self._report_counts_and_crcs()
+        self._report_counts_and_missing_crcs()
 
     def _opcode_and_range(self, view: memoryview, at: int) -> tuple[int, int, int]:
         """Return the opcode, and the start and end of the body, of the record at byte `at`. Errors: `DamageError` if it is invalid."""
@@ -353,7 +353,7 @@ class Container:
         if index.chunks:
             self.losses.bound_by_chunks(index.chunks)
 
-    def _report_counts_and_crcs(self) -> None:
+    def _report_counts_and_missing_crcs(self) -> None:
         if self._statistics is not None and not self.losses.has_lost_bytes:
             is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
             told = self.counts.contradiction_text(self._statistics, self.channels, is_damaged=is_damaged)

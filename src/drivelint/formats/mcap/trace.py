@@ -48,13 +48,13 @@ def read(probe: Probe) -> Recording:
 
         return foxglove_scene.read(probe.path, probe.options.topic)
     if family == "none":
-        _refuse_other_messages(probe.path)
+        _refuse_log_without_road_users(probe.path)
     if probe.path.is_dir():
         raise TraceError(f"{probe.path}: a bag of OSI messages is not read as a whole: give one of its files")
     return osi.read_mcap(probe.path, probe.options.topic)
 
 
-def _refuse_other_messages(path: Path) -> None:
+def _refuse_log_without_road_users(path: Path) -> None:
     """Raise `TraceError` for a bag, or a ROS 2 or Foxglove log, without odometry and road users; the error lists the topics."""
     from drivelint.formats.mcap import bag
 

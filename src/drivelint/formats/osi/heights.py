@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 
-def forget_copied_heights(states: States) -> QualityFinding | None:
+def forget_heights_copied_from_widths(states: States) -> QualityFinding | None:
     """Make all heights unknown if every known height equals its object's width, and return the finding; otherwise return None."""
     height, width = states.numbers["height_m"], states.numbers["width_m"]
     has_height = np.isfinite(height)

@@ -28,7 +28,7 @@ from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessageFacts, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
-from drivelint.formats.osi.heights import forget_copied_heights
+from drivelint.formats.osi.heights import forget_heights_copied_from_widths
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
 from drivelint.phrases import name_list
@@ -252,19 +252,16 @@ def _recording(
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
     frame = np.concatenate([batch.frame + offset for batch, offset in zip(batches, offsets, strict=False)])
     unique, actor = np.unique(np.concatenate([batch.ids for batch in batches]), return_inverse=True)
-    zeroed = _numbers_with_omitted_zeros(batches)
+    zeroed = _numbers_with_restored_zeros(batches)
     states = States(
         [str(number) for number in unique],
         actor.astype(np.int32),
         t_ns[frame],
-        {format_name: np.concatenate([numbers[format_name] for numbers in zeroed]) for format_name in zeroed[0]},
-        {
-            format_name: np.concatenate([batch.codes[format_name] for batch in batches])
-            for format_name in batches[0].codes
-        },
+        {column: np.concatenate([numbers[column] for numbers in zeroed]) for column in zeroed[0]},
+        {column: np.concatenate([batch.codes[column] for batch in batches]) for column in batches[0].codes},
         np.concatenate([batch.not_finite for batch in batches]),
     )
-    if copied := forget_copied_heights(states):
+    if copied := forget_heights_copied_from_widths(states):
         findings.append(copied)
     bulbs = pa.concat_tables(
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
@@ -299,7 +296,7 @@ def _recording(
     )
 
 
-def _numbers_with_omitted_zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
+def _numbers_with_restored_zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
     """Return the numbers of each batch, with 0 for missing coordinates if the log contains no zero.
 
     Some writers omit zeros, as proto3 does. In a log with zeros, a missing coordinate is unknown.

@@ -97,7 +97,7 @@ def ego_rows_or_reason(
         return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
     is_axle = bool(is_axle_frame(np.array([frame.encode()]))[0])
     centre = box.centre if box is not None and is_axle else (option_ahead_m, 0.0, 0.0)
-    rows = _rows_of_chain(chain, centre)
+    rows = _ego_poses_of_chain(chain, centre)
     if box is not None:
         rows.size[:] = box.size
     return EgoRows(moving.topics[0], frame, rows, has_box_centre=box is not None and is_axle)
@@ -149,7 +149,7 @@ def _chain_or_reason(
     return chain
 
 
-def _rows_of_chain(chain: list[_Transforms], centre: tuple[float, float, float]) -> RecordedPoses:
+def _ego_poses_of_chain(chain: list[_Transforms], centre: tuple[float, float, float]) -> RecordedPoses:
     moving = chain[-1]
     _, last = np.unique(moving.stamp_ns[::-1], return_index=True)  # relays repeat transforms
     kept = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))

@@ -69,7 +69,7 @@ def _autoware_object_fields(prefix: str, **kinematics: FieldTree | None) -> Fiel
     }  # fmt: skip
 
 
-_ELEMENT_FIELDS: Final[FieldTree] = {"color": None, "shape": None, "status": None}
+_LIGHT_ELEMENT_FIELDS: Final[FieldTree] = {"color": None, "shape": None, "status": None}
 MESSAGE_TYPES: Final[dict[str, MessageType]] = {
     PREDICTED_OBJECTS: MessageType(ROAD_USERS_ROLE, "/perception/object_recognition/objects", _autoware_object_fields("initial_")),
     TRACKED_OBJECTS: MessageType(
@@ -134,12 +134,12 @@ MESSAGE_TYPES: Final[dict[str, MessageType]] = {
     LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",
-        {"stamp": STAMP_FIELDS, "traffic_light_groups": {"traffic_light_group_id": None, "elements": _ELEMENT_FIELDS}},
+        {"stamp": STAMP_FIELDS, "traffic_light_groups": {"traffic_light_group_id": None, "elements": _LIGHT_ELEMENT_FIELDS}},
     ),
     OLD_LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",
-        {"stamp": STAMP_FIELDS, "signals": {"traffic_signal_id": None, "elements": _ELEMENT_FIELDS}},
+        {"stamp": STAMP_FIELDS, "signals": {"traffic_signal_id": None, "elements": _LIGHT_ELEMENT_FIELDS}},
     ),
     TURN_INDICATORS: MessageType("lights", "/vehicle/status/turn_indicators_status", {"stamp": STAMP_FIELDS, "report": None}),
     HAZARD_LIGHTS: MessageType("lights", "/vehicle/status/hazard_lights_status", {"stamp": STAMP_FIELDS, "report": None}),

@@ -79,7 +79,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     objects = log.select_topic(OBJECT_CONVERTERS, "road users")
     log.unread.refuse_kinds(path, OBJECT_CONVERTERS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
-    odometry, is_centre = _ego_rows(log, options)
+    odometry, is_centre = _ego_rows_and_has_centre(log, options)
     parts |= odometry
     if not sum(map(len, parts.values())):
         raise _nothing_to_read_error(path, log)
@@ -88,7 +88,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_times = choose_clock(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
     for topic in objects:
-        parts[topic] = _rows_with_ids(parts[topic], topic, log)
+        parts[topic] = _drop_rows_without_ids(parts[topic], topic, log)
         findings += _polygon_findings(parts[topic], topic)
     used = [sorted(distinct_values(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
@@ -185,7 +185,7 @@ def _topic_by_map(log: Log) -> dict[bytes, str]:
     return maps
 
 
-def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
+def _ego_rows_and_has_centre(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.
@@ -262,7 +262,7 @@ def _polygon_findings(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
     return [QualityFinding("polygon_box", "info", message, n, int(rows.t_ns[rows.outlined].min()))]
 
 
-def _rows_with_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
+def _drop_rows_without_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
     nameless = rows.ids == b"" if rows.ids.dtype.kind == "S" else np.zeros(len(rows), np.bool_)
     if not nameless.any():
         return rows

@@ -55,7 +55,7 @@ class RowMessage(LogMessage):
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
 
-class AssumedTypeMessage(RowMessage):
+class AssumedDefinitionMessage(RowMessage):
     """A message whose definition is not in its bag."""
 
     def error(self, path: Path, problem: str) -> MessageError:
@@ -107,7 +107,7 @@ class SqliteFile(Container):
                 self.counts.add(number, t_ns)
                 self.losses.bound_by_message(t_ns)
                 is_assumed = self.schemas[channel.schema_id].name in self.assumed_kinds
-                yield (AssumedTypeMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
+                yield (AssumedDefinitionMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
         if is_repaired:
             self._add_lost_rows(last + 1, "on may be")
         elif n_gaps:
@@ -121,9 +121,9 @@ class SqliteFile(Container):
             self._read_topics(connection)
         return Summary(schemas=self.schemas, channels=self.channels)
 
-    def _add_lost_rows(self, row: int, rest: str) -> None:
+    def _add_lost_rows(self, row: int, range_and_verb: str) -> None:
         """Add as a loss the rows of messages from `row` on, which the repair of the file did not find."""
-        cause = f"the file was repaired (it has a table lost_and_found), and rows of messages from {row} {rest} missing"
+        cause = f"the file was repaired (it has a table lost_and_found), and rows of messages from {row} {range_and_verb} missing"
         self.losses.add(row, row, cause)
 
     def _message_data(self, connection: sqlite3.Connection, row: int) -> bytes:

@@ -80,8 +80,8 @@ def read(probe: Probe) -> Recording:
             for row in _dict_rows(path / "actor.parquet", recording.actors)
             if row.get("is_ego") and row["actor_id"]
         ]
-    recording.signals = _read_table_without_nulls(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
-    recording.events = _read_table_without_nulls(
+    recording.signals = _read_table_refusing_nulls(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
+    recording.events = _read_table_refusing_nulls(
         path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value"
     )
     conditions = path / "drive_condition.parquet"
@@ -251,7 +251,7 @@ def _read_table_if_present(path: Path, required: tuple[str, ...], optional: tupl
     return pa.table(columns)
 
 
-def _read_table_without_nulls(path: Path, required: tuple[str, ...], optional: str) -> pa.Table | None:
+def _read_table_refusing_nulls(path: Path, required: tuple[str, ...], optional: str) -> pa.Table | None:
     """Return required columns and an optional text column, which is NULL if the file lacks it; None if there is no such file.
 
     Errors: `TraceError` for NULL in a required column.

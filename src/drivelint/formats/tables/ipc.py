@@ -20,7 +20,7 @@ def table(path: Path, required: Iterable[str] = (), optional: Iterable[str] = ()
 
     Errors: `TraceError` for a damaged file, a duplicate column, and a missing required column.
     """
-    return _take_from_open_file(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
+    return _read_from_open_file(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
 
 
 def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional: Iterable[str]) -> pa.Table:
@@ -43,13 +43,13 @@ def column_names_and_n_rows(path: Path) -> tuple[list[str], int]:
     def read(file: pa.RecordBatchFileReader) -> tuple[list[str], int]:
         return file.schema.names, sum(file.get_batch(i).num_rows for i in range(file.num_record_batches))
 
-    return _take_from_open_file(path, read)
+    return _read_from_open_file(path, read)
 
 
-def _take_from_open_file(path: Path, take: Callable[[pa.RecordBatchFileReader], T]) -> T:
+def _read_from_open_file(path: Path, read_part: Callable[[pa.RecordBatchFileReader], T]) -> T:
     try:
         with path.open("rb") as file, pa.ipc.open_file(pa.PythonFile(file)) as opened:
-            return take(opened)
+            return read_part(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(
             f"{path}: not readable in Arrow's file format: {' '.join(str(error).split())}: copy it again"

@@ -227,7 +227,7 @@ class _MappedTable:
         cause = f"{self.path.name}: rows that cannot be read"
         if self.sheet.has_content_after_zeros:
             return [LostTime(None, None, f"{cause}, because the file contains zero bytes there")]
-        places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
+        places = self.sheet.row_counts_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
         t_ns, timed, lost_rows = (
             np.insert(t_ns, places, 0),
             np.insert(timed, places, False),

@@ -73,7 +73,7 @@ class TimeColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
         return TIME_UNITS[self.unit] if self.rate_hz is None else 1e9 / self.rate_hz
 
 
-class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class CoordinateFrame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """The log's frame relative to the map's.
 
     `flip_y`: change the signs of y, vy and ay; `flip_yaw`: change the sign of the heading. `yaw_zero`: the direction of heading 0.
@@ -116,7 +116,7 @@ class Columns(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     height: FieldSpec | None = None
 
 
-class Pattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class WordPattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A regular expression that is searched in the column's text, and the word for a text that matches."""
 
     match: str
@@ -131,7 +131,7 @@ class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
     column: str | list[str] = []
     values: dict[str, str] = {}
-    patterns: list[Pattern] = []
+    patterns: list[WordPattern] = []
     default: str | None = None
 
     @property
@@ -154,7 +154,7 @@ class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     columns: Columns
     description: str = ""
     table: TextLayout = TextLayout()
-    frame: Frame = Frame()
+    frame: CoordinateFrame = CoordinateFrame()
     reference: PositionReference = PositionReference()
     actor_class: WordMapping | None = msgspec.field(default=None, name="class")
     indicator: WordMapping | None = None
@@ -246,7 +246,7 @@ def needed_columns(mapping: Mapping) -> list[str]:
 
 
 def refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> None:
-    """Raise `UsageError` for a key that a struct does not have. `where`: the keys above, each with a dot."""
+    """Raise `UsageError` for a key that a struct does not have. `key_prefix`: the keys above, each with a dot."""
     parts = _component_types(kind)
     struct = next((part for part in parts if isinstance(part, type) and issubclass(part, msgspec.Struct)), None)
     if struct is None or isinstance(raw, list) != any(get_origin(part) is list for part in parts):

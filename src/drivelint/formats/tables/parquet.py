@@ -24,12 +24,12 @@ _MAGIC: Final = b"PAR1"
 
 def schema(path: Path) -> pa.Schema:
     """Return the schema of a file. Errors: `TraceError` if the file is damaged."""
-    return _take_from_open_file(path, lambda file: file.schema_arrow)
+    return _read_from_open_file(path, lambda file: file.schema_arrow)
 
 
 def n_rows(path: Path) -> int:
     """Return the number of rows of a file. Errors: `TraceError` if the file is damaged."""
-    return _take_from_open_file(path, lambda file: int(file.metadata.num_rows))
+    return _read_from_open_file(path, lambda file: int(file.metadata.num_rows))
 
 
 def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
@@ -40,7 +40,7 @@ def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
         _refuse_if_unpacked_too_large(path, file.metadata, len(names or file.schema_arrow.names))
         return file.read(columns=names).combine_chunks()
 
-    return _take_from_open_file(path, read)
+    return _read_from_open_file(path, read)
 
 
 def column(rows: pa.Table, name: str) -> pa.Array:
@@ -49,7 +49,7 @@ def column(rows: pa.Table, name: str) -> pa.Array:
     return array.cast(array.type.value_type) if pa.types.is_dictionary(array.type) else array
 
 
-def _take_from_open_file(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
+def _read_from_open_file(path: Path, read_part: Callable[[pq.ParquetFile], T]) -> T:
     try:
         with path.open("rb") as file:
             head = file.read(len(_MAGIC) * 8)
@@ -61,7 +61,7 @@ def _take_from_open_file(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
             names = opened.schema_arrow.names
             if twice := [name for name in names if names.count(name) > 1]:
                 raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
-            return take(opened)
+            return read_part(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
 

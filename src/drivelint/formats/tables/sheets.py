@@ -115,7 +115,7 @@ class CsvSheet:
         }
         return int(table.num_rows)
 
-    def rows_before_bad_lines(self) -> list[int]:
+    def row_counts_before_bad_lines(self) -> list[int]:
         """Return for each malformed line the number of rows before it."""
         skipped = np.array(self._skipped, np.int64)
         return [line - self._layout.skip_rows - 2 - int(np.searchsorted(skipped, line)) for line in self.bad_lines]
@@ -191,7 +191,7 @@ class ParquetSheet:
         self._table = parquet.table(self._path, names)
         return int(self._table.num_rows)
 
-    def rows_before_bad_lines(self) -> list[int]:
+    def row_counts_before_bad_lines(self) -> list[int]:
         """Return an empty list: Parquet has no malformed lines."""
         return []
 

@@ -21,13 +21,13 @@ def accepts(probe: Probe) -> bool:
     """Return whether the log is of ROS 2 and the mapping is one of messages."""
     if probe.options.mapping is None or not mcap.accepts(probe):
         return False
-    from drivelint.formats.ros2 import own_mapping
+    from drivelint.formats.ros2 import topic_mapping
 
-    return own_mapping.is_message_mapping(probe.options.mapping)
+    return topic_mapping.is_message_mapping(probe.options.mapping)
 
 
 def read(probe: Probe) -> Recording:
     """Read the topics of the mapping."""
-    from drivelint.formats.ros2 import own_messages
+    from drivelint.formats.ros2 import mapped_messages
 
-    return own_messages.read(probe)
+    return mapped_messages.read(probe)

@@ -21,7 +21,7 @@ from drivelint.formats.mcap.bag import missing_message_findings
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
-from drivelint.formats.ros2 import own_mapping
+from drivelint.formats.ros2 import topic_mapping
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.ego_frame import EGO_FRAMES
 from drivelint.formats.ros2.merge import concatenate_states
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from drivelint.formats.probe import Probe
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
-    from drivelint.formats.ros2.own_mapping import MappedTopic, MessageMapping
+    from drivelint.formats.ros2.topic_mapping import MappedTopic, MessageMapping
     from drivelint.formats.ros2.types import Types
 
 _TOPICS_APART_NS: Final = 1_000_000_000
@@ -71,11 +71,11 @@ class MessageSheet(ParquetSheet):
 def read(probe: Probe) -> Recording:
     """Read the topics of the mapping. Errors: `TraceError` for a topic or a field that the log lacks; `UsageError` for the mapping."""
     path, file = probe.path, Path(probe.options.mapping or "")
-    message_mapping = own_mapping.load(file)
+    message_mapping = topic_mapping.load(file)
     messages = _MappedMessages(path, message_mapping, file.parent)
     for part in bag.bag_files(path):
         messages.read(part)
-    messages.check()
+    messages.compare_topics()
     recordings = []
     for topic in message_mapping.ros:
         sheet = MessageSheet(path, messages.table(topic), messages.other_fields(topic))
@@ -133,7 +133,7 @@ class _MappedMessages:
         self._containers.append(container)
         self._add_losses(container)
 
-    def check(self) -> None:
+    def compare_topics(self) -> None:
         """Compare the topics, after all files: messages that are missing, and topics of road users that are silent while others continue.
 
         Errors: `TraceError` if the topics have different clocks or frames.
@@ -269,7 +269,7 @@ def _decoded_fields(topic: MappedTopic, message_mapping: MessageMapping) -> Fiel
     names = [
         name
         for name in mappings.needed_columns(message_mapping.table_mapping(topic))
-        if name != own_mapping.TIME_COLUMN
+        if name != topic_mapping.TIME_COLUMN
     ]
     prefix = f"{topic.items}." if topic.items else ""
     tree: dict[str, Any] = {}
@@ -291,7 +291,7 @@ def _batch_rows(path: Path, topic: MappedTopic, table: Table, t_ns: Times) -> pa
             raise TraceError(f"{path}: a message on {topic.topic!r} has no list {topic.items!r} (items): {known}")
         table, t_ns = table.children[topic.items], t_ns[table.children[topic.items].parent]
     columns = {name: _arrow_column(values) for name, values in table.columns.items() if values.ndim == 1}
-    return pa.table({**columns, own_mapping.TIME_COLUMN: t_ns})
+    return pa.table({**columns, topic_mapping.TIME_COLUMN: t_ns})
 
 
 def _arrow_column(values: NDArray[Any]) -> pa.Array:

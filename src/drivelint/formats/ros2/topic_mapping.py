@@ -12,8 +12,8 @@ import msgspec
 from drivelint.errors import UsageError
 from drivelint.formats.tables.mapping import (
     Columns,
+    CoordinateFrame,
     EgoChoice,
-    Frame,
     Mapping,
     PositionReference,
     TimeColumn,
@@ -55,7 +55,7 @@ class MessageMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     message_files: str | None = None
     one_frame: bool = False
     description: str = ""
-    frame: Frame = Frame()
+    frame: CoordinateFrame = CoordinateFrame()
     ego: EgoChoice = EgoChoice()
 
     def table_mapping(self, topic: MappedTopic) -> Mapping:
