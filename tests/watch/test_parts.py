@@ -100,10 +100,10 @@ def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     told = [trigger.run_for_alarms([{"rule_id": RULE}] * 2) for _ in range(3)]
     trigger._last_s -= triggers.LEAST_PAUSE_S
-    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.left_out_note()]
+    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.note_on_left_out_alarms()]
     assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
     trigger.run_for_alarms([{"rule_id": RULE}])
-    assert trigger.left_out_note() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
+    assert trigger.note_on_left_out_alarms() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
     trigger.close()
 
 

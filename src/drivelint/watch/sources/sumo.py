@@ -16,7 +16,7 @@ from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.phrases import name_list
 from drivelint.watch.source import Frame, WindowFileSource
-from drivelint.watch.sources.recordings import write_errors_as_trace_errors
+from drivelint.watch.sources.recordings import convert_write_errors
 from drivelint.watch.sources.sumo_process import SumoProcess, SumoStep
 
 if TYPE_CHECKING:
@@ -91,8 +91,8 @@ class SumoSource(WindowFileSource):
                 self._is_over = True
                 break
             step = self._sumo.step()
-            with write_errors_as_trace_errors(self.recording):
-                self._record(step)
+            with convert_write_errors(self.recording):
+                self._record_step(step)
             frames.append(
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
@@ -127,10 +127,10 @@ class SumoSource(WindowFileSource):
         self.halt()
         for file, end in self._files.values():
             if not file.closed:
-                with write_errors_as_trace_errors(self.recording), file:
+                with convert_write_errors(self.recording), file:
                     file.write(end)
 
-    def _record(self, step: SumoStep) -> None:
+    def _record_step(self, step: SumoStep) -> None:
         """Write a step to the recording at once, so that it is kept even if this process is killed."""
         self._append_to_file(self.recording, self._sumo.output_head, step.xml, _FCD_END)
         if step.lights:
