@@ -155,7 +155,7 @@ class Watch:
 
     def __exit__(self, *_error: object) -> None:
         for each in self._triggers:
-            each.close()
+            each.wait_for_running_commands()
         self._stack.close()
 
     def watch(self) -> WatchOutcome:
@@ -350,7 +350,7 @@ class Watch:
         if halting is not None:
             self.watched.halted, self.watched.halted_ns = halting, now_ns
             self._emit(messages.halt(halting, now_ns, drive_start_ns))
-            self._source.halt()
+            self._source.end_sender_if_possible()
 
     def _is_halting_alarm(self, alarm: Alarm) -> bool:
         """Return whether an alarm halts the source: its severity is at least `halt_on`, and its rule is no draft."""

@@ -73,7 +73,7 @@ class Trigger:
         limits = f"at most once in {LEAST_PAUSE_S:g} s, and {MOST_SIMULTANEOUS_RUNS} run at a time"
         return f"--on: {self.command[0]} was not started for {plural(n, 'alarm')}: it starts {limits}"
 
-    def close(self) -> None:
+    def wait_for_running_commands(self) -> None:
         """Wait up to `LEAST_PAUSE_S` for each command that still runs; after that, leave it running."""
         for process in self._running:
             with suppress(subprocess.TimeoutExpired):

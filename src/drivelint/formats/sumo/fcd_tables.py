@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Columns = dict[str, str]
 
 _TIME_COLUMN: Final = "timestep_time"
-_PLAIN_COLUMNS: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
+_COLUMNS_WITHOUT_ELEMENT_NAME: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's if all of these are present."""
 _NUMBER_COLUMNS: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
@@ -44,7 +44,7 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     The element is "" if the columns are not named after an element.
     """
     there = set(names)
-    if there >= _PLAIN_COLUMNS:
+    if there >= _COLUMNS_WITHOUT_ELEMENT_NAME:
         return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
     groups = {}
     for kind in KINDS if _TIME_COLUMN in there else ():

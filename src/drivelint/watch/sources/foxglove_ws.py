@@ -72,7 +72,7 @@ class FoxgloveSource(WindowFileSource):
             raise TraceError(f"{self._uri}: no message came")
         self._reader.write_window(frames, path, may_omit_earlier_data=may_omit_earlier_data)
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """See `Source`. The sender of the messages cannot be ended from here."""
 
     def close(self) -> None:
