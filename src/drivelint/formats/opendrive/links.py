@@ -40,7 +40,7 @@ def lanelet_links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[
         else:
             _report_missing_link(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
     link_by_ids: dict[tuple[str, str], Link] = {}
-    for a, b in sorted(_contacts_through_short(touching, lanes.short)):
+    for a, b in sorted(_contacts_through_short_lanes(touching, lanes.short)):
         link = _directed_link(a, b, lanes, quality)
         if link is not None:
             link_by_ids[link[0].lanelet_id, link[1].lanelet_id] = link
@@ -141,7 +141,7 @@ def _road_end_xy(road: Road, end: str) -> np.ndarray:
     return np.array([line.x[0], line.y[0]])
 
 
-def _contacts_through_short(
+def _contacts_through_short_lanes(
     touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]
 ) -> set[tuple[LaneEnd, LaneEnd]]:
     """Return the contacts; where a section was left out as too short, the lanes at its two ends touch each other instead."""
