@@ -93,24 +93,24 @@ def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
         assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
     assert trigger.run_for_alarms([{"rule_id": "another"}]) is None
     assert (trigger.n_run, trigger.n_left_out) == (1, 4)
-    trigger.close()
+    trigger.wait_for_running_commands()
 
 
 def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     told = [trigger.run_for_alarms([{"rule_id": RULE}] * 2) for _ in range(3)]
     trigger._last_s -= triggers.LEAST_PAUSE_S
-    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.left_out_note()]
+    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.note_on_left_out_alarms()]
     assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
     trigger.run_for_alarms([{"rule_id": RULE}])
-    assert trigger.left_out_note() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
-    trigger.close()
+    assert trigger.note_on_left_out_alarms() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
+    trigger.wait_for_running_commands()
 
 
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
     assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
-    trigger.close()
+    trigger.wait_for_running_commands()
     assert not (tmp_path / "b").exists()
 
 
@@ -187,7 +187,7 @@ def test_what_goes_on_when_it_is_first_asked_for_is_interrupted_alone() -> None:
     watched, checked = WatchInterruption(), WatchInterruption()
     watched.request()
     for each in (watched, checked):
-        each.begin_check()
+        each.switch_to_check()
         each.request()
     assert (watched.of_watch.requested, watched.of_check.requested) == (True, False)  # what was recorded is checked
     assert (checked.of_watch.requested, checked.of_check.requested) == (False, True)

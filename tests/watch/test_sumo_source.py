@@ -207,7 +207,7 @@ def test_halting_ends_sumo_and_the_recording_can_be_read(scenario: Path, tmp_pat
     for _ in range(20):
         source.read(5.0)
     assert processes(str(conf))
-    source.halt()
+    source.end_sender_if_possible()
     assert not processes(str(conf))
     assert source.read(5.0) is None
     source.close()

@@ -232,7 +232,7 @@ def _watch_and_check(
         for text in opened.notes():
             emit(messages.note(text))
         progress.note(watched.timing_text())
-        interruption.begin_check()
+        interruption.switch_to_check()
         result = check_recording(
             settings,
             opened.recording,

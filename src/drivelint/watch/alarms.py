@@ -93,7 +93,7 @@ class AlarmLog:
         """Add the contacts in the newest frames, up to the step at `now_ns`, and return the new alarms."""
         new: list[Alarm] = []
         for row in rows:
-            same = [each for each in self._standing if self._is_same(each, row)]
+            same = [each for each in self._standing if self._is_same_finding(each, row)]
             if not same:
                 same = [Alarm(len(self.alarms), row, now_ns, row["t_end_ns"], is_early=True)]
                 new += same
@@ -116,7 +116,7 @@ class AlarmLog:
         for row in _findings_with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
-            same = [each for each in self._standing if self._is_same(each, row)]
+            same = [each for each in self._standing if self._is_same_finding(each, row)]
             if not same:
                 alarm = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
                 fails_now = is_first or (judged_until_ns is not None and row["t_end_ns"] > judged_until_ns)
@@ -172,10 +172,10 @@ class AlarmLog:
     def _allowed_gap_ns(self, alarm: Alarm) -> int:
         return self._gaps_ns[alarm.row["rule_id"]]
 
-    def _is_same(self, alarm: Alarm, row: Row) -> bool:
+    def _is_same_finding(self, alarm: Alarm, row: Row) -> bool:
         return finding_key(alarm.row) == finding_key(row) and alarm.is_continued_by(row, self._allowed_gap_ns(alarm))
 
-    def assign_findings(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+    def assign_findings_to_alarms(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
         """Assign the findings of the whole log to the alarms, and return the findings without an alarm.
 
         Withdrawn alarms are included: the whole log may confirm their findings.
@@ -185,7 +185,7 @@ class AlarmLog:
             by_key.setdefault(finding_key(alarm.row), []).append(alarm)
         left = []
         for row in _findings_with_reference_times(findings, verdicts):
-            mine = [each for each in by_key.get(finding_key(row), []) if self._is_same(each, row)]
+            mine = [each for each in by_key.get(finding_key(row), []) if self._is_same_finding(each, row)]
             for alarm in mine:
                 alarm.finding_ids.append(row["finding_id"])
             if not mine:

@@ -53,17 +53,17 @@ def check_recording(
     halted = watch.watched.halted
     if halted is None or watch.watched.halted_ns is None:
         return result
-    start_ns = result.drives["t_start_ns"][0].as_py() or 0
+    drive_start_ns = result.drives["t_start_ns"][0].as_py() or 0
     told = (
-        f"halted at {(watch.watched.halted_ns - start_ns) / NS_PER_S:.2f} s by an alarm of {halted.row['rule_id']} "
-        f"at {(halted.row['t_start_ns'] - start_ns) / NS_PER_S:.2f} s"
+        f"halted at {(watch.watched.halted_ns - drive_start_ns) / NS_PER_S:.2f} s by an alarm of {halted.row['rule_id']} "
+        f"at {(halted.row['t_start_ns'] - drive_start_ns) / NS_PER_S:.2f} s"
     )
     return replace(result, halted=told, notes=(*result.notes, told))
 
 
 def report_outcome(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
     """Report for each alarm whether the whole log confirms it, then the late and the revised verdicts. Return the counts as a text."""
-    missed = watch.alarms.assign_findings(result.findings.to_pylist(), result.verdicts)
+    missed = watch.alarms.assign_findings_to_alarms(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.alarm_outcome(alarm))
     late, other = watch.settled.late_and_revised_rows(result.verdicts)

@@ -14,7 +14,7 @@ class WatchInterruption:
         self._running = self.of_watch
         self._asked: Interruption | None = None
 
-    def begin_check(self) -> None:
+    def switch_to_check(self) -> None:
         """Let later interruptions end the check, unless the watch was already interrupted."""
         self._running = self.of_check
 

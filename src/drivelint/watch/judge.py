@@ -97,7 +97,7 @@ class WindowJudge:
         }
         self.profiles = options.profiles or DEFAULT_PROFILES
         asked = profiles.keys() if options.advise else self.profiles
-        self.styles = {name: profile.style for name, profile in profiles.items()}
+        self.style_by_profile = {name: profile.style for name, profile in profiles.items()}
         self._stack = ExitStack()
         self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
@@ -118,10 +118,10 @@ class WindowJudge:
         # a cursor of its own, which a rule's time limit does not interrupt
         return ContactFinder(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
-    def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
+    def judge(self, traces: Sequence[Trace], drive_start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
         """Judge windows together; return the result of each, or the error that prevents it. Raise only errors that concern all windows.
 
-        `start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
+        `drive_start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """
         store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _LASTING_TABLES])
         self._session.forget_judged()
@@ -134,7 +134,9 @@ class WindowJudge:
             except DriveLintError as error:
                 found[name] = error
             else:
-                drives[name] = replace(drive, trace=_trace_with_start(with_drive_id(drive.trace, name), start_ns))
+                drives[name] = replace(
+                    drive, trace=_trace_with_drive_start(with_drive_id(drive.trace, name), drive_start_ns)
+                )
         refusals: list[RefusedLog] = []
         if drives:
             judge_and_refuse_faulty(self._session, list(drives.values()), refusals)
@@ -161,11 +163,11 @@ class WindowJudge:
         self._stack.close()
 
 
-def _trace_with_start(trace: Trace, start_ns: int | None) -> Trace:
+def _trace_with_drive_start(trace: Trace, drive_start_ns: int | None) -> Trace:
     """Return a window whose seconds count from the log's first step."""
-    if start_ns is None:
+    if drive_start_ns is None:
         return trace
-    log = replace_columns(trace.tables["data_log"], {"t_start_ns": [start_ns]})
+    log = replace_columns(trace.tables["data_log"], {"t_start_ns": [drive_start_ns]})
     return replace(trace, tables={**trace.tables, "data_log": log})
 
 

@@ -29,7 +29,7 @@ def _null_if_not_finite(value: object) -> object:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
+def alarm(alarm: Alarm, rule: Rule, drive_start_ns: int) -> Message:
     """Return the message of a new alarm."""
     row = alarm.row
     return {
@@ -37,8 +37,8 @@ def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
         "alarm": alarm.number,
         "rule_id": rule.id,
         "title": rule.title,
-        "t_s": _seconds_since_start(row["t_start_ns"], start_ns),
-        "said_s": _seconds_since_start(alarm.said_ns, start_ns),
+        "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns),
+        "said_s": _seconds_since_start(alarm.said_ns, drive_start_ns),
         "latency_s": round(alarm.latency_s, 6),
         "is_early": alarm.is_early,
         "status": rule.status,
@@ -46,35 +46,35 @@ def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
     }
 
 
-def over(alarm: Alarm, start_ns: int) -> Message:
+def over(alarm: Alarm, drive_start_ns: int) -> Message:
     """Return the message of an alarm whose rule is kept again, or has stopped being judged."""
     return {
         "type": "over",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_end_s": _seconds_since_start(alarm.t_end_ns, start_ns),
+        "t_end_s": _seconds_since_start(alarm.t_end_ns, drive_start_ns),
         "t_end_ns": alarm.t_end_ns,
     }
 
 
-def withdrawn(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
+def withdrawn(alarm: Alarm, now_ns: int, drive_start_ns: int) -> Message:
     """Return the message that an alarm is withdrawn."""
     return {
         "type": "withdrawn",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_s": _seconds_since_start(now_ns, start_ns),
+        "t_s": _seconds_since_start(now_ns, drive_start_ns),
         "t_ns": now_ns,
     }
 
 
-def halt(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
+def halt(alarm: Alarm, now_ns: int, drive_start_ns: int) -> Message:
     """Return the message that an alarm halts the drive."""
     return {
         "type": "halt",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_s": _seconds_since_start(now_ns, start_ns),
+        "t_s": _seconds_since_start(now_ns, drive_start_ns),
         "t_ns": now_ns,
         "after_s": round((now_ns - alarm.row["t_start_ns"]) / 1e9, 6),
     }
@@ -96,10 +96,10 @@ def alarm_outcome(alarm: Alarm) -> Message:
     }
 
 
-def settled_verdict(row: Row, start_ns: int) -> Message:
+def settled_verdict(row: Row, drive_start_ns: int) -> Message:
     """Return the message of a verdict that is reported before the log's end."""
     said = {name: _null_if_not_finite(row[name]) for name in (*KEY_COLUMNS, *VALUE_COLUMNS)}
-    return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], start_ns), **said}
+    return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns), **said}
 
 
 def late_verdict(row: Row) -> Message:
@@ -117,5 +117,5 @@ def end(counts: Mapping[str, int], exit_code: int, why: str) -> Message:
     return {"type": "end", **counts, "exit_code": exit_code, "why": why}
 
 
-def _seconds_since_start(t_ns: int, start_ns: int) -> float:
-    return round((t_ns - start_ns) / 1e9, 6)
+def _seconds_since_start(t_ns: int, drive_start_ns: int) -> float:
+    return round((t_ns - drive_start_ns) / 1e9, 6)

@@ -50,7 +50,7 @@ CONTACT_SEARCH_PAUSE_S: Final = 0.05
 JUDGE_NICENESS: Final = 3
 """The nice value of the thread that judges windows. It gets half as much processor time as the search for contacts; a greater value
 would let other programs stop it."""
-QUIET_AFTER_CHILD_S: Final = 1.0
+SILENCE_AFTER_CHILD_END_S: Final = 1.0
 """After the program that writes the log has ended, the source is read until no frames have come for this long."""
 
 
@@ -75,7 +75,7 @@ class WatchOutcome:
         return f"{plural(len(took), 'window')} judged, each in {took[len(took) // 2]:.1f} s (median), {took[-1]:.1f} s at most"
 
 
-class _WindowPass(NamedTuple):
+class _WindowOutcome(NamedTuple):
     """The outcome of a window, and the seconds that it took."""
 
     trace: Trace | None
@@ -127,7 +127,7 @@ class Watch:
         self._worker = self._stack.enter_context(
             ThreadPoolExecutor(1, initializer=None if source.is_advanced_by_reads else _lower_thread_priority)
         )
-        self._running: Future[_WindowPass] | None = None
+        self._running: Future[_WindowOutcome] | None = None
         self._contacts = self._judge.contact_finder()
         self._egos: set[str] = set()
         """The egos of the window that was judged last."""
@@ -143,9 +143,9 @@ class Watch:
         self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)
         self.settled = SettledVerdicts()
         self._warnings = ShrinkingMargins() if options.warn else None
-        self._advice = ProfileAdvice(self._judge.styles) if options.advise else None
+        self._advice = ProfileAdvice(self._judge.style_by_profile) if options.advise else None
         self._judged_until_ns: int | None = None
-        self._start_ns: int | None = None
+        self._drive_start_ns: int | None = None
         self._doubt: str | None = None
         self._erred: set[str] = set()
         self.watched = WatchOutcome()
@@ -155,7 +155,7 @@ class Watch:
 
     def __exit__(self, *_error: object) -> None:
         for each in self._triggers:
-            each.close()
+            each.wait_for_running_commands()
         self._stack.close()
 
     def watch(self) -> WatchOutcome:
@@ -166,7 +166,7 @@ class Watch:
         child = ChildProgram(self._options.command) if self._options.command else None
         try:
             self._loop(child)
-            for text in filter(None, [each.left_out_note() for each in self._triggers]):
+            for text in filter(None, [each.note_on_left_out_alarms() for each in self._triggers]):
                 self._emit(messages.note(text))
             if child is not None and self.watched.halted is None and not self._interruption.requested:
                 code = child.wait_or_end()
@@ -191,7 +191,7 @@ class Watch:
                 self._report_contacts(self._unseen)
                 self._unseen = []
                 self._look_at_s = time.monotonic() + CONTACT_SEARCH_PAUSE_S
-            is_quiet = time.monotonic() - quiet_since > QUIET_AFTER_CHILD_S
+            is_quiet = time.monotonic() - quiet_since > SILENCE_AFTER_CHILD_END_S
             is_over = frames is None or (child is not None and child.exit_code is not None and is_quiet)
             self._judge_due_windows(is_over=is_over)
 
@@ -206,7 +206,7 @@ class Watch:
                 if not (is_advanced_by_reads or is_over or self._running.done()):
                     return
                 running, self._running = self._running, None
-                self._report_pass(running.result())
+                self._report_window_outcome(running.result())
                 continue
             is_due = self._source.is_window_due or is_over or self._window.unjudged_ns >= due_ns
             if not (is_due and self._window.advance(most_ns)):
@@ -243,7 +243,7 @@ class Watch:
 
     def _report_contacts(self, frames: Sequence[Frame]) -> None:
         """Report the contacts in new frames, once the ego is known."""
-        if self._contacts is None or self._start_ns is None:
+        if self._contacts is None or self._drive_start_ns is None:
             return
         latest = self._window.frames_since(min(frame.t_ns for frame in frames) - contact.LEAST_EXAMINED_NS)
         try:
@@ -258,43 +258,43 @@ class Watch:
             self._emit(messages.note(f"contacts are only found in windows: {error}"))
             return
         now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
-        self._report_alarms(self.alarms.add_contacts(rows, now_ns), now_ns, self._start_ns)
+        self._report_alarms(self.alarms.add_contacts(rows, now_ns), now_ns, self._drive_start_ns)
 
-    def _deferred_judgement(self) -> Callable[[], _WindowPass]:
+    def _deferred_judgement(self) -> Callable[[], _WindowOutcome]:
         """Return a function that judges the present window. It may be called in another thread, and raises nothing."""
         begun_s = time.perf_counter()
-        frames, start_ns = self._window.frames, self._start_ns
+        frames, drive_start_ns = self._window.frames, self._drive_start_ns
 
-        def judge_window() -> _WindowPass:
+        def judge_window() -> _WindowOutcome:
             trace = None
             try:
                 trace = read()
-                outcome = self._judge.judge([trace], start_ns)[0]
+                outcome = self._judge.judge([trace], drive_start_ns)[0]
             except Exception as error:  # noqa: BLE001 - whatever error a window causes, the recording must still be checked
                 outcome = refusal_of(Path(self._options.source), error).error
-            return _WindowPass(trace, outcome, time.perf_counter() - begun_s)
+            return _WindowOutcome(trace, outcome, time.perf_counter() - begun_s)
 
         try:
             read = self._source.window_reader(frames, self._folder, self._ingest)
         except Exception as error:  # noqa: BLE001 - as above
             judged = refusal_of(Path(self._options.source), error).error
-            return lambda: _WindowPass(None, judged, 0.0)
+            return lambda: _WindowOutcome(None, judged, 0.0)
         return judge_window
 
-    def _report_pass(self, window_pass: _WindowPass) -> None:
+    def _report_window_outcome(self, window_outcome: _WindowOutcome) -> None:
         """Report the new results of a window. If it cannot be read or judged, report this and continue."""
-        if isinstance(window_pass.outcome, DriveLintError):
-            self._report_unjudged_window(window_pass.outcome)
+        if isinstance(window_outcome.outcome, DriveLintError):
+            self._report_unjudged_window(window_outcome.outcome)
             return
         self._doubt = None
         since_ns = self._judged_until_ns
-        self._report_judged_window(window_pass.outcome)
-        self.watched.busy_s.append(window_pass.took_s)
-        if window_pass.trace is not None:
-            self._egos = egos_of(window_pass.trace)
-        if self._server is not None and window_pass.trace is not None:
-            self._server.publish_scene(window_pass.trace)
-            self._server.publish_margins(window_pass.outcome.margins_since(since_ns))
+        self._report_judged_window(window_outcome.outcome)
+        self.watched.busy_s.append(window_outcome.took_s)
+        if window_outcome.trace is not None:
+            self._egos = egos_of(window_outcome.trace)
+        if self._server is not None and window_outcome.trace is not None:
+            self._server.publish_scene(window_outcome.trace)
+            self._server.publish_margins(window_outcome.outcome.margins_since(since_ns))
 
     def _report_unjudged_window(self, error: DriveLintError) -> None:
         """Report why the log so far cannot be judged; not again for a text that differs only in its numbers."""
@@ -306,8 +306,8 @@ class Watch:
 
     def _report_judged_window(self, judged_window: JudgedWindow) -> None:
         """Report new results of a window."""
-        if self._start_ns is None:
-            self._start_ns = judged_window.t_start_ns
+        if self._drive_start_ns is None:
+            self._drive_start_ns = judged_window.t_start_ns
         for rule_id, reason in judged_window.rule_errors():
             if rule_id not in self._erred:
                 self._erred.add(rule_id)
@@ -316,30 +316,30 @@ class Watch:
         for row in self.settled.new_settled_rows(
             judged_window, judged_window.t_start_ns if from_ns is None else from_ns + WARM_UP_NS
         ):
-            self._emit(messages.settled_verdict(row, self._start_ns))
+            self._emit(messages.settled_verdict(row, self._drive_start_ns))
         change = self.alarms.add_window(judged_window, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged_window.t_end_ns
         # frames that came while the window was judged are known, too
         now_ns = judged_window.t_end_ns + self._window.unjudged_ns
         for alarm in change.withdrawn:
-            self._emit(messages.withdrawn(alarm, now_ns, self._start_ns))
+            self._emit(messages.withdrawn(alarm, now_ns, self._drive_start_ns))
         for alarm in change.new:
             alarm.said_ns = now_ns
-        self._report_alarms(change.new, now_ns, self._start_ns)
+        self._report_alarms(change.new, now_ns, self._drive_start_ns)
         for alarm in change.over:
-            self._emit(messages.over(alarm, self._start_ns))
+            self._emit(messages.over(alarm, self._drive_start_ns))
         if self._warnings is not None:
-            for message in self._warnings.new_messages(judged_window, self._judge.rules, self._start_ns):
+            for message in self._warnings.new_messages(judged_window, self._judge.rules, self._drive_start_ns):
                 self._emit(message)
         if self._advice is not None:
-            for message in self._advice.new_messages(judged_window, self._start_ns):
+            for message in self._advice.new_messages(judged_window, self._drive_start_ns):
                 self._emit(message)
 
-    def _report_alarms(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:
+    def _report_alarms(self, alarms: Sequence[Alarm], now_ns: int, drive_start_ns: int) -> None:
         """Report alarms, start the commands for them, and halt the source if one of the alarms requires it."""
         said = []
         for alarm in alarms:
-            said.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], start_ns))
+            said.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], drive_start_ns))
             self._emit(said[-1])
             if self._server is not None:
                 self._server.publish_alarm(said[-1])
@@ -349,8 +349,8 @@ class Watch:
         halting = next((alarm for alarm in alarms if self._is_halting_alarm(alarm)), None)
         if halting is not None:
             self.watched.halted, self.watched.halted_ns = halting, now_ns
-            self._emit(messages.halt(halting, now_ns, start_ns))
-            self._source.halt()
+            self._emit(messages.halt(halting, now_ns, drive_start_ns))
+            self._source.end_sender_if_possible()
 
     def _is_halting_alarm(self, alarm: Alarm) -> bool:
         """Return whether an alarm halts the source: its severity is at least `halt_on`, and its rule is no draft."""

@@ -26,7 +26,9 @@ class ShrinkingMargins:
     def __init__(self) -> None:
         self._open: dict[Key, int] = {}
 
-    def new_messages(self, window: JudgedWindow, rules: Mapping[str, Rule], start_ns: int) -> list[dict[str, Any]]:
+    def new_messages(
+        self, window: JudgedWindow, rules: Mapping[str, Rule], drive_start_ns: int
+    ) -> list[dict[str, Any]]:
         """Return a message for each margin that is below its rule's `near_margin` at the newest steps, and shrinks."""
         found: list[dict[str, Any]] = []
         seen: dict[Key, int] = {}
@@ -60,7 +62,7 @@ class ShrinkingMargins:
                 "ego_id": row["ego_id"],
                 "object_id": row["object_id"],
                 "profile": row["profile"],
-                "t_s": round((int(t_ns[-1]) - start_ns) / 1e9, 6),
+                "t_s": round((int(t_ns[-1]) - drive_start_ns) / 1e9, 6),
                 "t_ns": int(t_ns[-1]),
                 "margin": float(margin[-1]),
                 "near_margin": rule.near_margin,

@@ -71,7 +71,7 @@ class Source(Protocol):
         """
         ...
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """End the program that produces the frames, if drivelint can end it."""
         ...
 

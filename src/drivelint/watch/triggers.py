@@ -63,9 +63,9 @@ class Trigger:
             process.stdin.close()
         self._running.append(process)
         self.n_run += 1
-        return self.left_out_note()
+        return self.note_on_left_out_alarms()
 
-    def left_out_note(self) -> str | None:
+    def note_on_left_out_alarms(self) -> str | None:
         """Return in words how many alarms were left out since the last note; None if there are none."""
         n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
         if not n:
@@ -73,14 +73,14 @@ class Trigger:
         limits = f"at most once in {LEAST_PAUSE_S:g} s, and {MOST_SIMULTANEOUS_RUNS} run at a time"
         return f"--on: {self.command[0]} was not started for {plural(n, 'alarm')}: it starts {limits}"
 
-    def close(self) -> None:
+    def wait_for_running_commands(self) -> None:
         """Wait up to `LEAST_PAUSE_S` for each command that still runs; after that, leave it running."""
         for process in self._running:
             with suppress(subprocess.TimeoutExpired):
                 process.wait(LEAST_PAUSE_S)
 
 
-def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected: Mapping[str, Rule]) -> list[Trigger]:
+def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected_rules: Mapping[str, Rule]) -> list[Trigger]:
     """Return the triggers of texts `SEL=COMMAND`. Errors: `UsageError` for a wrong text, or if SEL names no selected rule."""
     found = []
     for text in texts:
@@ -94,7 +94,8 @@ def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected: Mappi
         if not command:
             raise UsageError(f"--on {text!r}: no command behind the sign =")
         rules = (
-            frozenset(rule.id for rule in catalogue.select_rules(rules_by_id, [names.strip()], ())) & selected.keys()
+            frozenset(rule.id for rule in catalogue.select_rules(rules_by_id, [names.strip()], ()))
+            & selected_rules.keys()
         )
         if not rules:
             raise UsageError(f"--on {text!r}: none of the selected rules is meant: add it with --rules")

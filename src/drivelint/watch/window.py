@@ -15,7 +15,7 @@ NS_PER_S: Final = 1_000_000_000
 """One second in nanoseconds."""
 
 
-class _PlacedFrame(NamedTuple):
+class _FrameOnSteadyClock(NamedTuple):
     """A frame, its time on a clock that does not jump, and whether the log's clock jumped before it."""
 
     at_ns: int
@@ -32,9 +32,9 @@ class Window:
 
     def __init__(self, length_ns: int) -> None:
         self._length_ns = length_ns
-        self._frames: deque[_PlacedFrame] = deque()
-        self._waiting: deque[_PlacedFrame] = deque()
-        self._last: _PlacedFrame | None = None
+        self._frames: deque[_FrameOnSteadyClock] = deque()
+        self._waiting: deque[_FrameOnSteadyClock] = deque()
+        self._last: _FrameOnSteadyClock | None = None
         self._latest_ns = 0
         """The latest time of all frames on the clock without jumps."""
         self._newest_ns: int | None = None
@@ -53,7 +53,7 @@ class Window:
             if is_cut and last is not None:
                 self.jumps.append((last.frame.t_ns, frame.t_ns))
             at_ns = frame.t_ns if last is None else self._latest_ns + 1 if is_cut else last.at_ns + step_ns
-            self._last = _PlacedFrame(at_ns, frame, is_cut)
+            self._last = _FrameOnSteadyClock(at_ns, frame, is_cut)
             self._waiting.append(self._last)
             self._latest_ns = at_ns if last is None else max(at_ns, self._latest_ns)
 

@@ -337,6 +337,6 @@ def test_a_source_that_is_closed_twice(tmp_path: Path) -> None:
     for source in sources:
         assert source.read(0.0) == []
         assert not source.is_advanced_by_reads
-        source.halt()
+        source.end_sender_if_possible()
         source.close()
         source.close()

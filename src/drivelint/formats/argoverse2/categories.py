@@ -50,12 +50,12 @@ def class_codes(categories: pa.Array, class_by_category: dict[str, str | None]) 
     """Return the index into `ACTOR_CLASSES` of each category (-1: not known), and a note on categories that have no entry, if any."""
     foreign: list[str] = []
 
-    def code_of(word: str) -> int:
-        if word not in class_by_category:
-            foreign.append(word)
-        name = class_by_category.get(word)
+    def class_code(category: str) -> int:
+        if category not in class_by_category:
+            foreign.append(category)
+        name = class_by_category.get(category)
         return -1 if name is None else ACTOR_CLASSES.index(name)
 
-    codes = codes_of_texts(categories, code_of)
+    codes = codes_of_texts(categories, class_code)
     note = f"categories that Argoverse does not define, so the class is not known: {name_list(sorted(foreign))}"
     return codes, [note] if foreign else []

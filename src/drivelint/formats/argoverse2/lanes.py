@@ -188,9 +188,11 @@ def _runs_against(bound: Floats, bound_if_same_way: Floats, bound_if_opposite: F
     return to_against < to_with
 
 
-def _mark(side: str, word: str) -> Mark:
-    line, _, colour = word.rpartition("_")
-    return Mark(side, 0.0, 1.0, "none" if word == "NONE" else _MARKING_BY_LINE.get(line), color=_COLOURS.get(colour))
+def _mark(side: str, mark_type: str) -> Mark:
+    line, _, colour = mark_type.rpartition("_")
+    return Mark(
+        side, 0.0, 1.0, "none" if mark_type == "NONE" else _MARKING_BY_LINE.get(line), color=_COLOURS.get(colour)
+    )
 
 
 def _report_unread_types(segments: Iterable[_LaneSegment], quality: MapQuality) -> None:
@@ -233,16 +235,16 @@ def _set_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _LaneSeg
     inside = {lane.lanelet_id: lane for lane in lanes if segments[lane.lanelet_id].is_intersection}
     parent = {name: name for name in inside}
 
-    def root(name: str) -> str:
-        while parent[name] != name:
-            name = parent[name]
-        return name
+    def root_of_junction(lane_id: str) -> str:
+        while parent[lane_id] != lane_id:
+            lane_id = parent[lane_id]
+        return lane_id
 
     for group in (*_connected_lane_groups(lanes, inside), *_overlapping_lane_pairs(list(inside.values()))):
-        names = sorted({root(name) for name in group}, key=int)
+        names = sorted({root_of_junction(name) for name in group}, key=int)
         parent.update(dict.fromkeys(names[1:], names[0]))
     for name, lane in inside.items():
-        lane.junction_id = f"j{root(name)}"
+        lane.junction_id = f"j{root_of_junction(name)}"
 
 
 def _connected_lane_groups(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> list[list[str]]:

@@ -79,7 +79,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
     signs.report_problems(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
     _report_unread_markings_and_types(root, quality)
-    _remove_contradicted_road_types(root, built, quality)
+    _remove_road_types_against_tags(root, built, quality)
     _set_junctions(root, built)
     lanes = build_lanes(built, request.offset, quality)
     if not lanes:
@@ -161,7 +161,7 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _remove_contradicted_road_types(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
+def _remove_road_types_against_tags(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
     """Remove the road type `urban` in a scenario with the tag `highway`: converters write this type for every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]

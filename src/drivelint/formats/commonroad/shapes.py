@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats
 
-SAME_BOX_PLACE_M: Final = 0.01
+SAME_PLACE_TOLERANCE_M: Final = 0.01
 """Two interpretations of a box's place that differ by less agree: positions are accurate to a centimetre at best."""
 _POLYGON: Final = "a polygon"
 _TRAILER: Final = "a truck with its trailer"
-_SEVERAL: Final = "several shapes"
-_NO_SHAPE: Final = "a shape that is not supported"
+_SEVERAL_SHAPES: Final = "several shapes"
+_UNSUPPORTED_SHAPE: Final = "a shape that is not supported"
 
 
 class ObstacleShape(NamedTuple):
@@ -71,13 +71,15 @@ def read_shape(obstacle: etree._Element) -> ObstacleShape:
     if len(parts) == 1 and parts[0].tag == "polygon":
         return ObstacleShape(centre_m=_bounding_box_centre(parts[0]), no_box=_POLYGON)
     several = len(parts) > 1 or any(part.tag == "shapeGroup" for part in parts)
-    return ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL) if several else ObstacleShape(no_box=_NO_SHAPE)
+    return (
+        ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL_SHAPES) if several else ObstacleShape(no_box=_UNSUPPORTED_SHAPE)
+    )
 
 
 def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleShape:
     """Return a box. `size`: the element with length and width; `origin`: the element that states where the shape's origin lies."""
     if size is None:
-        return ObstacleShape(ahead_m=math.nan, no_box=_NO_SHAPE)
+        return ObstacleShape(ahead_m=math.nan, no_box=_UNSUPPORTED_SHAPE)
     length, width = (safe_xml.number_or_nan(size.findtext(name)) for name in ("length", "width"))
     shift = _child_number(origin, "originXShift")
     if abs(shift) > length / 2:
@@ -115,7 +117,7 @@ def box_offsets(shape: ObstacleShape, yaw_rad: Floats) -> Floats:
         return offset
     along_axes = np.tile(np.array(shape.centre_m)[:, None], (1, n))
     along_obstacle = np.stack(rotate_vectors(along_axes[0], along_axes[1], yaw_rad))
-    agree = np.hypot(*(along_obstacle - along_axes)) <= SAME_BOX_PLACE_M
+    agree = np.hypot(*(along_obstacle - along_axes)) <= SAME_PLACE_TOLERANCE_M
     if shape.ahead_m != 0.0:
         agree[:] = False  # both offsets are given: it is not known whether one includes the other
     return offset + np.where(agree, along_axes, np.nan)

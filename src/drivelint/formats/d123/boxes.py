@@ -59,7 +59,7 @@ def box_states(
     columns = {name: _lists_of_rows(boxes.columns[name], rows) for name in _COLUMNS}
     frame = np.repeat(np.arange(len(rows)), list_lengths(columns["track_token"]))
     flat = {name: lists.flatten() for name, lists in columns.items()}
-    labels, findings, is_ego = _class_codes(boxes, integers(flat["label"]))
+    labels, findings, is_ego = _class_codes_and_is_ego(boxes, integers(flat["label"]))
     notes = []
     if is_ego.any():
         notes.append(
@@ -114,7 +114,7 @@ def _lists_of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
     return lists.take(pa.array(rows))
 
 
-def _class_codes(boxes: ModalityFile, label_numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
+def _class_codes_and_is_ego(boxes: ModalityFile, label_numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
     """Return the class of each box, -1: not known; findings; and which boxes are the ego's own."""
     qualified = str(boxes.metadata.get("box_detection_label_class", ""))
     enumeration = _label_enumeration(boxes)

@@ -26,7 +26,7 @@ _COLUMNS: Final = {
     "dynamic_state_se3": pa.list_(pa.float64(), 9),  # velocity, acceleration, angular velocity along the ego's axes
 }
 EGO_ID: Final = "ego"
-_MIN_TURN_RAD: Final = 0.02
+_MAX_TURN_WITHOUT_RATES_RAD: Final = 0.02
 _LEAST_COMPARED_POSES: Final = 20
 """With fewer poses that have a pose before and after, velocities count as measured."""
 _LEAST_SAME_VELOCITY_SHARE: Final = 0.99
@@ -59,11 +59,11 @@ def ego_id(box_ids: Iterable[str]) -> str:
 
 
 def ego_box(
-    ego: ModalityFile, about: facts.DatasetFacts, name: str, forward_m: float
+    ego: ModalityFile, about: facts.DatasetFacts, name: str, option_forward_m: float
 ) -> tuple[EgoBox, list[QualityFinding]]:
     """Return the ego's box, and findings. Errors: `TraceError` for metadata that do not contain the box.
 
-    `forward_m`: the user's option for how far the box centre is ahead, used if the metadata contradict themselves.
+    `option_forward_m`: the user's option for how far the box centre is ahead, used if the metadata contradict themselves.
     """
     entries = ego.metadata
     centre, axle = (_metadata_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
@@ -73,7 +73,7 @@ def ego_box(
     if not math.isnan(wheel_base) and np.hypot(*(centre[:2] - axle[:2])) < 0.1 * wheel_base:
         # the centre of a box lies between the axles: one of the two poses is wrong
         sizes[:] = np.nan
-        centre[0] += forward_m
+        centre[0] += option_forward_m
         message = (
             "the metadata put the middle of the ego's box on its rear axle: the place of its box is not known: set its size, and how far "
             "its middle is ahead of the recorded place: --ego-size LENGTH,WIDTH,AHEAD"
@@ -124,7 +124,12 @@ def _centre_velocity(ego: ModalityFile, imu: Poses, motion: Floats, box: EgoBox)
     if still[has_velocity].all():
         return np.where(has_velocity[:, None], np.zeros_like(velocity), np.nan)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
-    if len(yaw) and np.ptp(yaw) > _MIN_TURN_RAD and not (turning[has_velocity] != 0.0).any() and box.place[:2].any():
+    if (
+        len(yaw)
+        and np.ptp(yaw) > _MAX_TURN_WITHOUT_RATES_RAD
+        and not (turning[has_velocity] != 0.0).any()
+        and box.place[:2].any()
+    ):
         return unknown_velocity
     swing = rotated(imu.turn, np.cross(turning, box.place))
     return np.where(has_velocity[:, None], outward + swing, np.nan)

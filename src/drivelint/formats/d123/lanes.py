@@ -162,14 +162,16 @@ def _bounded_lane(
 
 
 def _limit_spans_and_source(
-    name: int, limit_mps: float | None, quality: MapQuality
+    lane_number: int, limit_mps: float | None, quality: MapQuality
 ) -> tuple[tuple[SpeedLimitSpan, ...], str]:
     """Return the limit of a lane, if the map has one, and its source."""
     if limit_mps is None or math.isnan(limit_mps):
         return (), "lane"
     if 0.0 < limit_mps <= _MAX_LIMIT_MPS:
         return ((0.0, 1.0, limit_mps),), "lane"
-    quality.add("invalid_speed", "warning", str(name), f"{limit_mps:g} m/s is not a speed limit: treated as unknown")
+    quality.add(
+        "invalid_speed", "warning", str(lane_number), f"{limit_mps:g} m/s is not a speed limit: treated as unknown"
+    )
     return ((0.0, 1.0, None),), "unread"
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from drivelint.formats.d123.arrow_files import LogInfo
 
-OWN_MAP_FILE: Final = "map.arrow"
+LOG_MAP_FILE: Final = "map.arrow"
 
 
 def find_map(
@@ -35,11 +35,11 @@ def find_map(
     """
     shared = shared_map_path(folder, info)
     path = next(
-        (path for path in (folder / OWN_MAP_FILE, shared) if path is not None and report_searched_path(path).is_file()),
+        (path for path in (folder / LOG_MAP_FILE, shared) if path is not None and report_searched_path(path).is_file()),
         None,
     )
     if path is None:
-        looked = " nor at ".join(str(each) for each in (folder / OWN_MAP_FILE, shared) if each is not None)
+        looked = " nor at ".join(str(each) for each in (folder / LOG_MAP_FILE, shared) if each is not None)
         return None, [], [f"the log has no map: no file at {looked}: give a map with --map"]
     try:
         source = read_source(path)
@@ -48,7 +48,7 @@ def find_map(
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {error}")], []
     if not layers.n_objects("LANE"):
         return None, [QualityFinding.unusable_map(f"the log's own map cannot be used: {path.name} has no lanes")], []
-    notes = [] if path.name == OWN_MAP_FILE else [f"the map of the place is {path.name} under {path.parent.parent}"]
+    notes = [] if path.name == LOG_MAP_FILE else [f"the map of the place is {path.name} under {path.parent.parent}"]
     if set(light_lanes) <= _signalled_lanes(layers):
         return source.content, [], notes
     return _map_with_light_lanes(layers, light_lanes), [], notes

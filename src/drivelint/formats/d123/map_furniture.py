@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 _READ_LAYERS: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
-_MAX_LEVEL_DIFFERENCE_M: Final = 3.0  # a crossing so far above or below a lane is not on it
+_LEAST_LEVEL_DIFFERENCE_M: Final = 3.0  # a crossing so far above or below a lane is not on it
 
 
 def road_lines(layers: MapLayers, quality: MapQuality) -> list[RoadLine]:
@@ -62,18 +62,22 @@ def crossing_rows(
         for name, ring in outlines.items()
         if ring.shape[1] == 3 and layers.header.get("map_has_z")
     }
-    return [row for row in rows if _is_on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))]
+    return [
+        row
+        for row in rows
+        if _is_crossing_on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))
+    ]
 
 
-def _crossing_lane(name: int, ring: Floats) -> BoundedLane:
+def _crossing_lane(crossing_id: int, ring: Floats) -> BoundedLane:
     """Return a crossing as a lane whose bounds are the two halves of the outline."""
     half = (len(ring) + 1) // 2
-    return BoundedLane(str(name), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
+    return BoundedLane(str(crossing_id), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
 
 
-def _is_on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
-    s = (row["s_start_m"] + row["s_end_m"]) / 2.0
-    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _MAX_LEVEL_DIFFERENCE_M
+def _is_crossing_on_level(crossing: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
+    s = (crossing["s_start_m"] + crossing["s_end_m"]) / 2.0
+    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _LEAST_LEVEL_DIFFERENCE_M
 
 
 def report_missing_content(layers: MapLayers, about: facts.DatasetFacts, quality: MapQuality) -> None:

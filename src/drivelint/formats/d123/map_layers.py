@@ -133,10 +133,10 @@ class MapLayers:
         return self.rows.filter(pa.array(self._layer == facts.LAYER_NUMBERS[layer]))
 
     @staticmethod
-    def _report_left_out(layer: str, name: int, why: str, quality: MapQuality) -> None:
+    def _report_left_out(layer: str, object_id: int, why: str, quality: MapQuality) -> None:
         check = "invalid_lane" if layer == "LANE" else "invalid_object"
         what = "lanelet" if layer == "LANE" else layer.lower().replace("_", " ")
-        quality.add(check, "error", str(name), f"{what} {name} is left out: {why}")
+        quality.add(check, "error", str(object_id), f"{what} {object_id} is left out: {why}")
 
 
 def decode_points(value: Any) -> Floats:

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask
 
-_MAX_DISTANCE_M: Final = 0.1  # about the width of a painted line
+_MAX_LINE_DISTANCE_M: Final = 0.1  # about the width of a painted line
 _PIECE_LENGTH_M: Final = 2.0
 _SIDE_DEPENDENT_MARKINGS: Final = frozenset({"broken_solid", "solid_broken"})
 """Markings whose name depends on the side from which they are seen: known only if the lane that owns the line is known."""
-_UNKNOWN_CODE: Final = -1
+_UNKNOWN_MARKING_CODE: Final = -1
 _MARKING_WORDS: Final = tuple(sorted({word for word in facts.MARKINGS.values() if word is not None}))
 
 
@@ -82,11 +82,11 @@ def _marks_by_place(
 
 
 def _marking_code(line: RoadLine, about: facts.DatasetFacts) -> int:
-    """Return the index of a line's marking in `_MARKING_WORDS`, `_UNKNOWN_CODE` if the marking is not certain."""
+    """Return the index of a line's marking in `_MARKING_WORDS`, `_UNKNOWN_MARKING_CODE` if the marking is not certain."""
     word = facts.MARKINGS.get(line.type_number)
     unsure = {facts.ROAD_LINE_NUMBERS[name] for name in about.unsure_lines}
     if word is None or word in _SIDE_DEPENDENT_MARKINGS or line.type_number in unsure:
-        return _UNKNOWN_CODE
+        return _UNKNOWN_MARKING_CODE
     return _MARKING_WORDS.index(word)
 
 
@@ -103,7 +103,7 @@ def _marking_codes_of_pieces(points: Floats, starts: Indices, tree: shapely.STRt
     `starts`: the index of the first point of each bound, and the number of all points.
     """
     n = len(codes)
-    at, line = all_pairs(tree, shapely.points(points), "dwithin", _MAX_DISTANCE_M)
+    at, line = all_pairs(tree, shapely.points(points), "dwithin", _MAX_LINE_DISTANCE_M)
     keys = np.sort(at.astype(np.int64) * n + line)
     within = np.arange(len(points)) - np.repeat(starts[:-1], np.diff(starts))
     middles = np.flatnonzero(within % 2 == 1)
@@ -112,10 +112,10 @@ def _marking_codes_of_pieces(points: Floats, starts: Indices, tree: shapely.STRt
     some = keys[is_middle[keys // n]]
     along = some[_are_among(some - n, keys) & _are_among(some + n, keys)]
     piece = np.searchsorted(middles, along // n)
-    lowest, highest = np.full(len(middles), np.iinfo(np.int64).max), np.full(len(middles), _UNKNOWN_CODE - 1)
+    lowest, highest = np.full(len(middles), np.iinfo(np.int64).max), np.full(len(middles), _UNKNOWN_MARKING_CODE - 1)
     np.minimum.at(lowest, piece, codes[along % n])
     np.maximum.at(highest, piece, codes[along % n])
-    return np.where(lowest == highest, lowest, _UNKNOWN_CODE)
+    return np.where(lowest == highest, lowest, _UNKNOWN_MARKING_CODE)
 
 
 def _are_among(values: Indices, ordered: Indices) -> Mask:
@@ -133,7 +133,7 @@ def _marks_of_side(side: str, piece_codes: Indices) -> list[Mark]:
             side,
             b / len(piece_codes),
             e / len(piece_codes),
-            None if piece_codes[b] == _UNKNOWN_CODE else _MARKING_WORDS[piece_codes[b]],
+            None if piece_codes[b] == _UNKNOWN_MARKING_CODE else _MARKING_WORDS[piece_codes[b]],
         )
         for b, e in zip(begins.tolist(), ends.tolist(), strict=True)
     ]

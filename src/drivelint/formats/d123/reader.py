@@ -52,7 +52,7 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_TIME_ROUNDING_US: Final = 10  # a difference in time in which no actor moves by a millimetre
+_SAME_TIME_TOLERANCE_US: Final = 10  # a difference in time in which no actor moves by a millimetre
 _MALFORMED_FRAMES_TEXT: Final = (
     "frames whose lists of boxes differ in length or lack a track, or that refer to missing rows"
 )
@@ -187,7 +187,7 @@ def _nearest_ego_rows(box_us: Times, ego_us: Times, rows_of_frames: Indices) -> 
     after = np.clip(np.searchsorted(ego_us, box_us), 1, max(len(ego_us) - 1, 1))
     before, after = after - 1, np.minimum(after, len(ego_us) - 1)
     rows = np.where(box_us - ego_us[before] <= ego_us[after] - box_us, before, after)
-    return rows, np.where(np.abs(ego_us[rows] - box_us) <= _TIME_ROUNDING_US, box_us, ego_us[rows])
+    return rows, np.where(np.abs(ego_us[rows] - box_us) <= _SAME_TIME_TOLERANCE_US, box_us, ego_us[rows])
 
 
 def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:

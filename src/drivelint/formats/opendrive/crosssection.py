@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 CHORD_TOLERANCE_M = 0.01  # the largest distance of a bound from the chord between two of its points
 MAX_SPACING_M = 5.0  # the largest distance between two points
 MIN_SIDEWAYS_STEP_M = 0.01  # a larger step in an edge is kept as a step
-MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
+MAX_POINTS = 100_000  # per lane section: 100 km in steps of a metre
 MAX_EDGE_OFFSET_M = 1000.0  # no lane lies further from its reference line
 _SAME_STATION_M = 1e-3  # break points closer than this count as one
 _INSIDE_TOLERANCE_M = 1e-6  # a record applies to a section if it begins no further inside than this
@@ -37,27 +37,27 @@ class LaneEdges:
 class EdgeEvaluator:
     """Evaluates the lane edges of one lane section."""
 
-    def __init__(self, road: Road, strip: LaneSection) -> None:
-        self.road, self.strip = road, strip
-        usable = [lane for lane in strip.lanes if lane.invalid is None]
+    def __init__(self, road: Road, lane_section: LaneSection) -> None:
+        self.road, self.lane_section = road, lane_section
+        usable = [lane for lane in lane_section.lanes if lane.invalid is None]
         self.left = [lane for lane in usable if lane.number > 0]
         self.right = [lane for lane in usable if lane.number < 0][::-1]
         self.numbers = [*(lane.number for lane in self.left[::-1]), 0, *(lane.number for lane in self.right)]
         self.negative_m: dict[int, float] = {}
 
-    def edges(self, s: Floats, at: Floats | None = None) -> LaneEdges:
-        """Return the edges at stations `s` (n,), ascending. `at`: the stations at which records and geometries are looked up."""
-        if at is None:
-            at = np.clip(
+    def edges(self, s: Floats, lookup_s: Floats | None = None) -> LaneEdges:
+        """Return the edges at stations `s` (n,), ascending. `lookup_s`: the stations at which records and geometries are looked up."""
+        if lookup_s is None:
+            lookup_s = np.clip(
                 s + _INSIDE_TOLERANCE_M,
-                self.strip.start_m + _INSIDE_TOLERANCE_M,
-                self.strip.end_m - _INSIDE_TOLERANCE_M,
+                self.lane_section.start_m + _INSIDE_TOLERANCE_M,
+                self.lane_section.end_m - _INSIDE_TOLERANCE_M,
             )
-        line = self.road.plan.evaluate(s, at)
-        centre = self.road.offset.evaluate(s, at)
+        line = self.road.plan.evaluate(s, lookup_s)
+        centre = self.road.offset.evaluate(s, lookup_s)
         left, right = (
-            self._edges_outward(self.left, 1.0, centre, s, at),
-            self._edges_outward(self.right, -1.0, centre, s, at),
+            self._edges_outward(self.left, 1.0, centre, s, lookup_s),
+            self._edges_outward(self.right, -1.0, centre, s, lookup_s),
         )
         rows = [*left[::-1], centre, *right]
         t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
@@ -66,16 +66,16 @@ class EdgeEvaluator:
         return LaneEdges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
 
     def _edges_outward(
-        self, lanes: list[Lane], side: float, centre: tuple[Floats, Floats], s: Floats, at: Floats
+        self, lanes: list[Lane], side: float, centre: tuple[Floats, Floats], s: Floats, lookup_s: Floats
     ) -> list[tuple[Floats, Floats]]:
         edges = []
         t, dt = centre
         for lane in lanes:
             if lane.widths is not None:
-                width, slope = lane.widths.evaluate(s, at)
+                width, slope = lane.widths.evaluate(s, lookup_s)
             else:
                 assert lane.borders is not None  # noqa: S101 - network.py makes sure
-                border, slope = lane.borders.evaluate(s, at)
+                border, slope = lane.borders.evaluate(s, lookup_s)
                 # in the standard, borders have the sign of t; some writers write the distance without a sign
                 sign = side if border.sum() * side < 0.0 else 1.0
                 width, slope = side * (sign * border - t), side * (sign * slope - dt)
@@ -87,9 +87,9 @@ class EdgeEvaluator:
             edges.append((t, dt))
         return edges
 
-    def break_stations(self) -> Floats:
-        """Return the strip's two ends, and every station between them at which a geometry, an offset or a width begins."""
-        start, end = self.strip.start_m, self.strip.end_m
+    def record_change_stations(self) -> Floats:
+        """Return the section's two ends, and every station between them at which a geometry, an offset or a width begins."""
+        start, end = self.lane_section.start_m, self.lane_section.end_m
         profiles = [lane.widths or lane.borders for lane in (*self.left, *self.right)]
         stations = np.concatenate(
             [self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)]
@@ -98,9 +98,9 @@ class EdgeEvaluator:
         apart = np.diff(stations, prepend=-np.inf) > _SAME_STATION_M
         return np.concatenate([[start], stations[apart], [end]])
 
-    def sideways_steps(self, break_stations: Floats) -> tuple[Floats, Floats]:
+    def sideways_steps(self, record_change_stations: Floats) -> tuple[Floats, Floats]:
         """Return the inner break points where an edge steps sideways, and by how much (m)."""
-        inner = break_stations[1:-1]
+        inner = record_change_stations[1:-1]
         if not len(inner):
             return inner, inner
         before, after = (
@@ -111,9 +111,9 @@ class EdgeEvaluator:
         return inner[step > MIN_SIDEWAYS_STEP_M], step[step > MIN_SIDEWAYS_STEP_M]
 
 
-def sample_stations(evaluator: EdgeEvaluator, break_stations: Floats) -> Floats:
+def sample_stations(evaluator: EdgeEvaluator, record_change_stations: Floats) -> Floats:
     """Return stations, breaks included, at most MAX_SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
-    s = _divide_intervals(break_stations, np.ceil(np.diff(break_stations) / MAX_SPACING_M - 1e-9))
+    s = _divide_intervals(record_change_stations, np.ceil(np.diff(record_change_stations) / MAX_SPACING_M - 1e-9))
     for _ in range(10):
         parts = _n_parts_of_intervals(evaluator, s)
         if (parts <= 1).all():

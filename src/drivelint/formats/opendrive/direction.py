@@ -34,7 +34,7 @@ class DrivingDirection:
     forward_source: str
     travel: bool
 
-    def lane_direction(self, lane: Lane) -> tuple[int, bool]:
+    def direction_and_is_two_way(self, lane: Lane) -> tuple[int, bool]:
         """Return 1 or -1 (along or against the reference line) and whether the lane is driven both ways."""
         keep = 1 if self.forward else -1
         if lane.kind == "bidirectional" or lane.direction == "both":
@@ -69,7 +69,7 @@ class DrivingSideStatements:
     def collect(cls, net: Network, request: MapOptions) -> DrivingSideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
-        junctions, travel = _junction_votes(net), _travel_votes(net)
+        junctions, travel = _side_votes_by_junctions(net), _side_votes_by_travel_direction(net)
         candidates = [
             ("option", request.side, "--handedness says", False),
             ("attribute", _decisive_side(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
@@ -87,14 +87,15 @@ class DrivingSideStatements:
         )
         return cls(said, roads, _decisive_side(travel))
 
-    def two_way_direction(self) -> DrivingDirection:
+    def direction_on_two_way_roads(self) -> DrivingDirection:
         """Return the direction of the lanes on two-way roads, where it follows from the driving side."""
-        return self._direction("rht", self.statements[0] if self.statements else None)
+        return self._direction_by_statement("rht", self.statements[0] if self.statements else None)
 
-    def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> DrivingDirection:
+    def final_direction(self, side_by_opposing_lanes: str | None, quality: MapQuality) -> DrivingDirection:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
-        `side_by_lanes`: `rht` or `lht`, the driving side that follows from adjacent lanes with opposite directions; None: there are none.
+        `side_by_opposing_lanes`: `rht` or `lht`, the driving side that follows from adjacent lanes with opposite directions; None: there
+        are none.
         It assumes that lanes with negative numbers run along the reference line. It is `lht` if each direction is a road of its own and
         the other direction lies on its right, as in SUMO's left-hand nets.
         """
@@ -103,13 +104,13 @@ class DrivingSideStatements:
             message = f"the map has roads with both rules ({counts}): one rule is used for all"
             quality.add("handedness_mixed", "warning", None, message)
         direction = (
-            self._direction_without_opposing(quality)
-            if side_by_lanes is None
-            else self._direction_by_lanes(side_by_lanes, quality)
+            self._direction_without_opposing_lanes(quality)
+            if side_by_opposing_lanes is None
+            else self._direction_with_opposing_lanes(side_by_opposing_lanes, quality)
         )
         if direction.source == "default":
             message = "the map does not state which side is driven on: right-hand traffic is assumed; set --handedness"
-            if side_by_lanes is None and direction.forward_source != "default":
+            if side_by_opposing_lanes is None and direction.forward_source != "default":
                 message = (
                     f"the direction of the lanes is known from {direction.forward_source}, but no lane has a lane "
                     "of the other direction beside it: right-hand traffic is assumed; set --handedness"
@@ -117,9 +118,9 @@ class DrivingSideStatements:
             quality.add("handedness_default", "warning", None, message)
         return direction
 
-    def _direction_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> DrivingDirection:
+    def _direction_with_opposing_lanes(self, side_by_opposing_lanes: str, quality: MapQuality) -> DrivingDirection:
         statements = list(self.statements)
-        if side_by_lanes == "lht" and (
+        if side_by_opposing_lanes == "lht" and (
             rule := next((w for w in statements if w.source == "attribute" and not w.of_lanes), None)
         ):
             statements.remove(rule)  # by this rule, the lanes run so that the other side is driven on
@@ -129,13 +130,13 @@ class DrivingSideStatements:
             )
             quality.add("handedness_disagrees", "warning", None, message)
         statements = [
-            w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side))
+            w._replace(side=w.side if side_by_opposing_lanes == "rht" or not w.of_lanes else opposite_side(w.side))
             for w in statements
         ]
         _report_disagreements(statements, quality, "every direction")
-        return self._direction(side_by_lanes, statements[0] if statements else None)
+        return self._direction_by_statement(side_by_opposing_lanes, statements[0] if statements else None)
 
-    def _direction_without_opposing(self, quality: MapQuality) -> DrivingDirection:
+    def _direction_without_opposing_lanes(self, quality: MapQuality) -> DrivingDirection:
         side = next((w for w in self.statements if not w.of_lanes), None)
         option = next((w for w in self.statements if w.source == "option"), None)
         rule = next((w for w in self.statements if w.source == "attribute" and not w.of_lanes), None)
@@ -160,14 +161,16 @@ class DrivingSideStatements:
             self.travel == ("rht" if forward else "lht"),
         )
 
-    def _direction(self, side_by_lanes: str, statement: DrivingSideStatement | None) -> DrivingDirection:
-        side, source = (statement.side, statement.source) if statement else (side_by_lanes, "default")
-        forward = side == side_by_lanes
+    def _direction_by_statement(
+        self, side_by_opposing_lanes: str, statement: DrivingSideStatement | None
+    ) -> DrivingDirection:
+        side, source = (statement.side, statement.source) if statement else (side_by_opposing_lanes, "default")
+        forward = side == side_by_opposing_lanes
         return DrivingDirection(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
 def _report_disagreements(
-    statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
+    statements: Sequence[DrivingSideStatement], quality: MapQuality, what_is_wrong: str, advice: str | None = None
 ) -> None:
     """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness."""
     if len({w.side for w in statements}) > 1:
@@ -175,7 +178,7 @@ def _report_disagreements(
         # if the second statement agrees with the option, leaving out the option changes nothing
         remedy = advice or correction_hint(first.side, first.source if second.side != first.side else "")
         opinions = ", ".join(f"{w.text} {w.side}" for w in statements)
-        message = f"{opinions}: {first.side} is used. If this is not right, {wrong} is wrong: {remedy}."
+        message = f"{opinions}: {first.side} is used. If this is not right, {what_is_wrong} is wrong: {remedy}."
         quality.add("handedness_disagrees", "warning", None, message)
 
 
@@ -186,22 +189,22 @@ def _decisive_side(votes: Counter[str]) -> str | None:
     return side if n >= _DECISIVE_SHARE * votes.total() else None
 
 
-def _junction_votes(net: Network) -> Counter[str]:
+def _side_votes_by_junctions(net: Network) -> Counter[str]:
     """Return how many lanes in junctions show lht and rht: traffic runs away from the end at which their road is entered."""
     votes: Counter[str] = Counter()
     for connection in net.connections:
         road = net.roads.get(connection.connecting)
         if road is None or road.junction_id is None:
             continue
-        kinds = {lane.number: lane.kind for strip in road.strips for lane in strip.lanes}
+        kinds = {lane.number: lane.kind for lane_section in road.lane_sections for lane in lane_section.lanes}
         for _, to in connection.lanes:
             if kinds.get(to) in DRIVABLE_LANE_TYPES - {"bidirectional"}:
                 votes["rht" if (connection.contact == "start") == (to < 0) else "lht"] += 1
     return votes
 
 
-def _travel_votes(net: Network) -> Counter[str]:
-    lanes = (lane for road in net.roads.values() for strip in road.strips for lane in strip.lanes)
+def _side_votes_by_travel_direction(net: Network) -> Counter[str]:
+    lanes = (lane for road in net.roads.values() for lane_section in road.lane_sections for lane in lane_section.lanes)
     return Counter(
         "rht" if (lane.travel == "forward") == (lane.number < 0) else "lht"
         for lane in lanes
@@ -213,10 +216,12 @@ def report_lanes_against_side(net: Network, direction: DrivingDirection, quality
     """Report the lanes whose stated direction is not that of their side of the road."""
     plain = replace(direction, travel=False)
     for road in net.roads.values():
-        for strip in road.strips:
-            for lane in strip.lanes:
-                if lane.invalid is None and direction.lane_direction(lane) != plain.lane_direction(lane):
-                    name = f"{road.road_id}.{strip.section}.{lane.number}"
+        for lane_section in road.lane_sections:
+            for lane in lane_section.lanes:
+                if lane.invalid is None and direction.direction_and_is_two_way(lane) != plain.direction_and_is_two_way(
+                    lane
+                ):
+                    name = f"{road.road_id}.{lane_section.section}.{lane.number}"
                     message = (
                         f"lane {name} is driven {lane.travel} according to its userData, against the rule of its side"
                     )

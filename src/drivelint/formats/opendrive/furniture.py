@@ -65,7 +65,7 @@ class PlacedObject:
         by_name = next((kind for part, kind in _KIND_BY_NAME_PART if part in name), "other")
         return _KIND_BY_TYPE.get(self.element.get("type", ""), by_name)
 
-    def row(self) -> dict[str, Any]:
+    def road_object_row(self) -> dict[str, Any]:
         """Return the row of `road_object`."""
         outline = None if self.outline is None else counter_clockwise(self.outline)
         return {
@@ -95,7 +95,7 @@ def furniture_rows(
     return {
         "traffic_signal": signals,
         "stop_line": sorted([*painted, *stop_lines], key=lambda r: (r["stop_line_id"], r["lanelet_id"], r["lane_s_m"])),
-        "road_object": [placed.row() for placed in objects],
+        "road_object": [placed.road_object_row() for placed in objects],
         "crossing": crossings,
     }
 
@@ -184,7 +184,7 @@ def _objects_of_element(road: Road, element: etree._Element, offset: tuple[float
     repeats = element.findall("repeat")
     if not repeats:
         s, t = np.array([number_attribute(element, "s")]), np.array([number_attribute(element, "t", 0.0)])
-        yield from _objects_at(road, element, s, t, offset, numbered=False)
+        yield from _objects_at(road, element, s, t, offset, is_repeated=False)
     n_repeats = 0
     for repeat in repeats:
         distance, length = number_attribute(repeat, "distance", 0.0), number_attribute(repeat, "length", 0.0)
@@ -198,21 +198,21 @@ def _objects_of_element(road: Road, element: etree._Element, offset: tuple[float
         if n_repeats > MAX_REPEATS:
             raise MalformedError(f"it is repeated more than {MAX_REPEATS} times")
         t = np.interp(steps, [0.0, max(length, 1e-9)], ends)
-        yield from _objects_at(road, element, start + steps.astype(np.float64), t, offset, numbered=True)
+        yield from _objects_at(road, element, start + steps.astype(np.float64), t, offset, is_repeated=True)
 
 
 def _objects_at(
-    road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
+    road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, is_repeated: bool
 ) -> Iterator[PlacedObject]:
     x, y, heading = road.xy_and_heading(s, t, offset)
-    local, on_road = _local_outline(element), _corners(element, "cornerRoad", ("s", "t"))
+    local, on_road = _local_outline(element), _outline_corners(element, "cornerRoad", ("s", "t"))
     turned = heading + number_attribute(element, "hdg", 0.0)
     for i in range(len(s)):
         outline = None
         if on_road is not None:
             shift = (
                 np.array([s[i] - number_attribute(element, "s"), t[i] - number_attribute(element, "t", 0.0)])
-                if numbered
+                if is_repeated
                 else 0.0
             )
             corners = on_road + shift
@@ -220,7 +220,7 @@ def _objects_at(
         elif local is not None:
             cos, sin = np.cos(turned[i]), np.sin(turned[i])
             outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
-        name = required_attribute(element, "id") + (f"/{i}" if numbered else "")
+        name = required_attribute(element, "id") + (f"/{i}" if is_repeated else "")
         yield PlacedObject(road, element, name, float(s[i]), float(x[i]), float(y[i]), outline)
 
 
@@ -256,7 +256,7 @@ def _band_object(
     )
 
 
-def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
+def _outline_corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
     for path in (f"outline/{tag}", f"outlines/outline/{tag}"):
         found = element.findall(path)
         if found:
@@ -267,7 +267,7 @@ def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats
 
 def _local_outline(element: etree._Element) -> Floats | None:
     """Return the corners in the object's frame: as listed, else its rectangle, else its circle; None: a point."""
-    listed = _corners(element, "cornerLocal", ("u", "v"))
+    listed = _outline_corners(element, "cornerLocal", ("u", "v"))
     if listed is not None:
         return listed
     length, width, radius = (number_attribute(element, a, 0.0) for a in ("length", "width", "radius"))

@@ -32,7 +32,7 @@ class Lanelet:
     key: LaneKey
     lane: Lane
     road: Road
-    strip: LaneSection
+    lane_section: LaneSection
     along: int
     bidirectional: bool
     line: LaneGeometry
@@ -79,7 +79,7 @@ def road_type(lanelet: Lanelet) -> str | None:
     """Return the road type of most of the lanelet's length; None if the map does not state it."""
     road = lanelet.road
     held: dict[str | None, float] = {}
-    for i, a, b in record_spans((s for s, _ in road.types), lanelet.strip.start_m, lanelet.strip.end_m):
+    for i, a, b in record_spans((s for s, _ in road.types), lanelet.lane_section.start_m, lanelet.lane_section.end_m):
         kind = road.types[i][1] if i >= 0 else None
         held[kind] = held.get(kind, 0.0) + b - a
     best = max(held.items(), key=lambda item: (item[1], item[0] or ""), default=(None, 0.0))[0]
@@ -89,7 +89,7 @@ def road_type(lanelet: Lanelet) -> str | None:
 def recorded_limit_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `speed_limit`: the lane's own records, else those of the road type; no row where neither states a limit."""
     rows: Rows = []
-    start, end = lanelet.strip.start_m, lanelet.strip.end_m
+    start, end = lanelet.lane_section.start_m, lanelet.lane_section.end_m
     for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].is_stated:
             rows += _rows_of_limit(lanelet, a, b, lanelet.lane.speeds[i], "lane")
@@ -115,8 +115,10 @@ def boundary_rows(lanelet: Lanelet) -> Rows:
     nearer to this lanelet. (In OpenDRIVE, it begins with the inner line, and on the centre line with the left line.)
     """
     lane_no, along = lanelet.lane.number, lanelet.along
-    inside = [lane for lane in lanelet.strip.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)]
-    inner = max(inside, key=lambda lane: abs(lane.number)).marks if inside else lanelet.strip.centre_marks
+    inside = [
+        lane for lane in lanelet.lane_section.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)
+    ]
+    inner = max(inside, key=lambda lane: abs(lane.number)).marks if inside else lanelet.lane_section.centre_marks
     # double lines on the centre line are named left to right: for lanes left of it, the nearer line comes first
     swap_inner = bool(inside) or lane_no < 0
     outer_side, inner_side = ("left", "right") if (lane_no > 0) == (along > 0) else ("right", "left")
@@ -130,7 +132,7 @@ _SWAPPED_MARKING = {"solid_broken": "broken_solid", "broken_solid": "solid_broke
 
 def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swaps_double_lines: bool) -> Rows:
     rows = []
-    spans = record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
+    spans = record_spans((m.start_m for m in marks), lanelet.lane_section.start_m, lanelet.lane_section.end_m)
     for i, a, b in lanelet.lanelet_spans(spans):
         mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
         marking = _SWAPPED_MARKING.get(mark.marking or "", mark.marking) if swaps_double_lines else mark.marking

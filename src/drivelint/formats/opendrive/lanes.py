@@ -40,14 +40,14 @@ def build_lanelets(
     """Build every lane of the network; lanes that are left out are reported in `quality`."""
     lanes = BuiltLanes()
     for road in net.roads.values():
-        _report_plan_faults(road, quality)
-        for strip in road.strips:
-            _SectionBuilder(road, strip, direction, offset, lanes, quality).build()
-        _join_one_sided_sections(road, lanes)
+        _report_plan_view_faults(road, quality)
+        for lane_section in road.lane_sections:
+            _SectionBuilder(road, lane_section, direction, offset, lanes, quality).build()
+        _set_neighbours_across_centre(road, lanes)
     return lanes
 
 
-def _report_plan_faults(road: Road, quality: MapQuality) -> None:
+def _report_plan_view_faults(road: Road, quality: MapQuality) -> None:
     gap, kink = road.plan.joint_gaps_and_turns()
     name = f"the geometries of road {road.road_id}"
     if (gap > 0.05).any():
@@ -63,34 +63,41 @@ def _report_plan_faults(road: Road, quality: MapQuality) -> None:
 
 @dataclass(eq=False)
 class _SectionBuilder:
-    """Builds the lanelets of one strip into `lanes`."""
+    """Builds the lanelets of one lane section into `lanes`."""
 
     road: Road
-    strip: LaneSection
+    lane_section: LaneSection
     direction: DrivingDirection
     offset: tuple[float, float]
     lanes: BuiltLanes
     quality: MapQuality
 
     def build(self) -> None:
-        strip, road = self.strip, self.road
-        keys = [self._lane_key(lane) for lane in strip.lanes]
-        length, name = strip.end_m - strip.start_m, f"section {strip.section} of road {road.road_id}"
+        lane_section, road = self.lane_section, self.road
+        keys = [self._lane_key(lane) for lane in lane_section.lanes]
+        length, name = (
+            lane_section.end_m - lane_section.start_m,
+            f"section {lane_section.section} of road {road.road_id}",
+        )
         if length < SHORT_SECTION_M:
             self.lanes.short.update(keys)
             message = f"{name} is {length:.4f} m long: it is left out, and links lead through it"
             self.quality.add("short_section", "info", road.road_id, message, max(len(keys), 1))
             return
-        self._report_failed(_reason_by_unbuildable_lane(strip))
+        self._report_failed(_reason_by_unbuildable_lane(lane_section))
         try:
-            evaluator = EdgeEvaluator(road, strip)
-            breaks = evaluator.break_stations()
+            evaluator = EdgeEvaluator(road, lane_section)
+            breaks = evaluator.record_change_stations()
             at, step = evaluator.sideways_steps(breaks)
             s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_SECTION_M])))
             edges = evaluator.edges(s)
         except MalformedError as error:
             self._report_failed(
-                {lane.number: str(error) for lane in strip.lanes if self._lane_key(lane) not in self.lanes.failed}
+                {
+                    lane.number: str(error)
+                    for lane in lane_section.lanes
+                    if self._lane_key(lane) not in self.lanes.failed
+                }
             )
             return
         if len(at):
@@ -99,7 +106,7 @@ class _SectionBuilder:
         self._add_lanelets(evaluator, edges, s)
         for number, low in sorted(evaluator.negative_m.items()):
             if low < -0.01:
-                lane_id = lanelet_id((road.road_id, strip.section, number))
+                lane_id = lanelet_id((road.road_id, lane_section.section, number))
                 message = f"the width of lane {lane_id} falls to {low:.2f} m: treated as 0 there"
                 self.quality.add("negative_width", "warning", lane_id, message)
 
@@ -107,7 +114,7 @@ class _SectionBuilder:
         """Create a lanelet between the edges of each lane, from left to right, and make lanelets beside each other neighbours."""
         row = {number: i for i, number in enumerate(evaluator.numbers)}
         lanelets: list[Lanelet] = []
-        for lane in self.strip.lanes[::-1]:
+        for lane in self.lane_section.lanes[::-1]:
             key = self._lane_key(lane)
             if key in self.lanes.failed:
                 continue
@@ -125,7 +132,7 @@ class _SectionBuilder:
     def _lanelet(self, lane: Lane, edges: LaneEdges, s: Floats, rows: tuple[int, int]) -> Lanelet:
         """Return the lanelet of a lane. `rows`: the rows of its left and right edge in `edges`, seen along the reference line."""
         i, j = rows
-        along, bidirectional = self.direction.lane_direction(lane)
+        along, bidirectional = self.direction.direction_and_is_two_way(lane)
         line = edges.line
         t, dt = 0.5 * (edges.t[i] + edges.t[j]), 0.5 * (edges.dt[i] + edges.dt[j])
         x, y = line.x - line.sin * t, line.y + line.cos * t
@@ -159,27 +166,29 @@ class _SectionBuilder:
             half_width=(0.5 * (edges.t[i] - edges.t[j]))[order],
         )
         return Lanelet(
-            self._lane_key(lane), lane, self.road, self.strip, along, bidirectional,
+            self._lane_key(lane), lane, self.road, self.lane_section, along, bidirectional,
             line=geometry, road_s=s[order], z=z[order], t=t[order],
         )  # fmt: skip
 
     def _lane_key(self, lane: Lane) -> LaneKey:
-        return (self.road.road_id, self.strip.section, lane.number)
+        return (self.road.road_id, self.lane_section.section, lane.number)
 
     def _report_failed(self, reasons: dict[int, str]) -> None:
         for number, reason in sorted(reasons.items()):
-            key = (self.road.road_id, self.strip.section, number)
+            key = (self.road.road_id, self.lane_section.section, number)
             self.lanes.failed.add(key)
             message = f"lane {lanelet_id(key)} cannot be built: {reason}"
             self.quality.add("invalid_lane", "error", lanelet_id(key), message)
 
 
-def _reason_by_unbuildable_lane(strip: LaneSection) -> dict[int, str]:
+def _reason_by_unbuildable_lane(lane_section: LaneSection) -> dict[int, str]:
     """Return lane number -> why the lane cannot be built. A lane outside an invalid lane has no place either."""
     reasons: dict[int, str] = {}
     for side in (1, -1):
         broken: Lane | None = None
-        for lane in sorted((lane for lane in strip.lanes if lane.number * side > 0), key=lambda lane: abs(lane.number)):
+        for lane in sorted(
+            (lane for lane in lane_section.lanes if lane.number * side > 0), key=lambda lane: abs(lane.number)
+        ):
             if lane.invalid is not None:
                 reasons[lane.number] = lane.invalid
                 broken = broken or lane
@@ -194,7 +203,7 @@ def _make_neighbours(a: Lanelet, b: Lanelet) -> None:
     setattr(b, "left" if b.along > 0 else "right", a)
 
 
-def _join_one_sided_sections(road: Road, lanes: BuiltLanes) -> None:
+def _set_neighbours_across_centre(road: Road, lanes: BuiltLanes) -> None:
     """Give each innermost lane of a one-sided lane section a neighbour: the lane across the centre line that it adjoins longest."""
     built = [lanes.built[key] for key in road.lane_keys if key in lanes.built]
     for a in built:
@@ -204,15 +213,17 @@ def _join_one_sided_sections(road: Road, lanes: BuiltLanes) -> None:
         across = [b for b in built if b.lane.number * a.lane.number < 0 and _is_innermost(b, built)]
         across = [b for b in across if _common_length_m(a, b) > SHORT_SECTION_M]
         if across and _is_innermost(a, built):
-            setattr(a, inward, max(across, key=lambda b: (_common_length_m(a, b), -b.strip.section)))
+            setattr(a, inward, max(across, key=lambda b: (_common_length_m(a, b), -b.lane_section.section)))
 
 
 def _is_innermost(a: Lanelet, built: list[Lanelet]) -> bool:
     return not any(
-        b.strip is a.strip and b.lane.number * a.lane.number > 0 and abs(b.lane.number) < abs(a.lane.number)
+        b.lane_section is a.lane_section
+        and b.lane.number * a.lane.number > 0
+        and abs(b.lane.number) < abs(a.lane.number)
         for b in built
     )
 
 
 def _common_length_m(a: Lanelet, b: Lanelet) -> float:
-    return min(a.strip.end_m, b.strip.end_m) - max(a.strip.start_m, b.strip.start_m)
+    return min(a.lane_section.end_m, b.lane_section.end_m) - max(a.lane_section.start_m, b.lane_section.start_m)

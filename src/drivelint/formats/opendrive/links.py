@@ -40,7 +40,7 @@ def lanelet_links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[
         else:
             _report_missing_link(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
     link_by_ids: dict[tuple[str, str], Link] = {}
-    for a, b in sorted(_contacts_through_short(touching, lanes.short)):
+    for a, b in sorted(_contacts_through_short_lanes(touching, lanes.short)):
         link = _directed_link(a, b, lanes, quality)
         if link is not None:
             link_by_ids[link[0].lanelet_id, link[1].lanelet_id] = link
@@ -51,18 +51,20 @@ def lanelet_links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[
             name = source.lanelet_id
             message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
             quality.add("link_gap", "warning" if source.drivable else "info", name, message)
-    _report_unlinked_ends(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
+    _report_unlinked_touching_ends(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
     return result
 
 
 def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     for road in net.roads.values():
         for side in (1, -1):
-            strips = road.sections_on_side(side)
-            for before, strip, after in zip([None, *strips], strips, [*strips[1:], None], strict=False):
-                for lane in strip.lanes:
+            lane_sections = road.sections_on_side(side)
+            for before, lane_section, after in zip(
+                [None, *lane_sections], lane_sections, [*lane_sections[1:], None], strict=False
+            ):
+                for lane in lane_section.lanes:
                     if lane.number * side > 0 and lane.invalid is None:
-                        key = (road.road_id, strip.section, lane.number)
+                        key = (road.road_id, lane_section.section, lane.number)
                         yield from _contacts_of_end(net, road, (key, START), lane.predecessors, before, quality=quality)
                         yield from _contacts_of_end(net, road, (key, END), lane.successors, after, quality=quality)
     for connection in net.connections:
@@ -103,10 +105,10 @@ def _contacts_of_end(
 
 
 def _lane_key_at_end(road: Road, contact: str, lane_no: int) -> LaneKey:
-    strips = road.sections_on_side(lane_no)
-    if not strips:
+    lane_sections = road.sections_on_side(lane_no)
+    if not lane_sections:
         return (road.road_id, 0, lane_no)
-    return (road.road_id, strips[0 if contact == START else -1].section, lane_no)
+    return (road.road_id, lane_sections[0 if contact == START else -1].section, lane_no)
 
 
 def _junction_contacts(net: Network, connection: Connection, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
@@ -139,7 +141,7 @@ def _road_end_xy(road: Road, end: str) -> np.ndarray:
     return np.array([line.x[0], line.y[0]])
 
 
-def _contacts_through_short(
+def _contacts_through_short_lanes(
     touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]
 ) -> set[tuple[LaneEnd, LaneEnd]]:
     """Return the contacts; where a section was left out as too short, the lanes at its two ends touch each other instead."""
@@ -189,7 +191,9 @@ def _report_missing_link(lanes: BuiltLanes, end: LaneEnd, target: str, quality: 
     quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {target}")
 
 
-def _report_unlinked_ends(lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality) -> None:
+def _report_unlinked_touching_ends(
+    lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality
+) -> None:
     """Report drivable lanes that another lane continues without a link: chains of lanes would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:

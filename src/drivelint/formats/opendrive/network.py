@@ -107,17 +107,17 @@ class Road:
     plan: PlanView
     elevation: Cubics
     offset: Cubics
-    strips: tuple[LaneSection, ...]
+    lane_sections: tuple[LaneSection, ...]
     element: etree._Element = field(repr=False)
 
     @property
     def lane_keys(self) -> list[tuple[str, int, int]]:
         """Road, section and number of each lane."""
-        return [(self.road_id, strip.section, lane.number) for strip in self.strips for lane in strip.lanes]
+        return [(self.road_id, part.section, lane.number) for part in self.lane_sections for lane in part.lanes]
 
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
         """Return the lane sections with lanes on the same side as lane `lane_no`, in order of station."""
-        return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
+        return [s for s in self.lane_sections if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
     def xy_and_heading(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
         """Return x, y (m) and the road's heading (rad) at road coordinates, each (n,); `s` is limited to the road."""
@@ -184,8 +184,8 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
         return None
 
 
-def _road(element: etree._Element, roads: dict[str, Road], quality: MapQuality) -> Road:
-    if element.get("id") in roads:
+def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQuality) -> Road:
+    if element.get("id") in earlier_roads:
         raise MalformedError("another road has the same id")
     length = number_attribute(element, "length")
     if not 0.0 < length <= MAX_ROAD_LENGTH_M:
@@ -208,7 +208,7 @@ def _road(element: etree._Element, roads: dict[str, Road], quality: MapQuality) 
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
         offset=cubics(element.findall("lanes/laneOffset"), "s"),
-        strips=_lane_sections(element, min(length, plan.end), quality),
+        lane_sections=_lane_sections(element, min(length, plan.end), quality),
         element=element,
     )
 
@@ -227,7 +227,7 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
     sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number_attribute(item[1], "s"))
     if not sections:
         raise MalformedError("it has no <laneSection>")
-    strips = []
+    found = []
     ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
     for index, section in sections:
         if _has_numbers_of_other_side(section):
@@ -239,12 +239,16 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
         groups = [sides] if together else [[side] for side in sides]
         for group in groups:
             end = ends[group[0]][section]
-            lanes = [_lane(lane, start, quality) for side in group for lane in section.findall(f"{side}/lane")]
+            lanes = [
+                _lane_or_invalid_lane(lane, start, quality)
+                for side in group
+                for lane in section.findall(f"{side}/lane")
+            ]
             numbers = [lane.number for lane in lanes]
             if len(set(numbers)) < len(numbers):
                 raise MalformedError(f"section {index} has the same lane twice")
-            strips.append(LaneSection(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
-    return tuple(strips)
+            found.append(LaneSection(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
+    return tuple(found)
 
 
 def _section_ends(sections: list[etree._Element], side: str, length: float) -> dict[etree._Element, float]:
@@ -255,11 +259,11 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
     return dict(zip(mine, ends, strict=True))
 
 
-def _lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
+def _lane_or_invalid_lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
     lane_no = integer_attribute(element, "id")
     kind = quality.known_word("lane_type", element.get("type", "none")) or "unknown"
     try:
-        return _lane_or_error(element, lane_no, kind, section_start, quality)
+        return _valid_lane(element, lane_no, kind, section_start, quality)
     except MalformedError as error:
         return Lane(lane_no, kind, invalid=str(error))
 
@@ -279,7 +283,7 @@ def _road_type(word: str, quality: MapQuality) -> str:
     return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
 
 
-def _lane_or_error(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
+def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
     fits = (side == "left") == (lane_no > 0)
@@ -326,12 +330,12 @@ SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
 def _speed_limits(
-    elements: Iterable[etree._Element], station: str, origin: float, quality: MapQuality, child: str | None = None
+    elements: Iterable[etree._Element], s_attribute: str, origin: float, quality: MapQuality, child: str | None = None
 ) -> tuple[SpeedLimit, ...]:
     """Read speed limits. With `child`, the limit is in a child element; an element without it is a record that states no limit."""
     speeds = []
     for element in elements:
-        start = origin + number_attribute(element, station, 0.0)
+        start = origin + number_attribute(element, s_attribute, 0.0)
         speed = element.find(child) if child else element
         word = "undefined" if speed is None else speed.get("max", "undefined").strip().lower()
         if speed is None or word == "undefined":

@@ -150,9 +150,9 @@ class PlanView:
         """Station at which the last geometry ends."""
         return float(self.s[-1] + self.length[-1])
 
-    def evaluate(self, s: Floats, at: Floats) -> ReferenceLine:
-        """Return the line at stations `s` (n,), ascending, by the geometries that apply at stations `at` (n,)."""
-        k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
+    def evaluate(self, s: Floats, lookup_s: Floats) -> ReferenceLine:
+        """Return the line at stations `s` (n,), ascending, by the geometries that apply at stations `lookup_s` (n,)."""
+        k = np.clip(np.searchsorted(self.s, lookup_s, side="right") - 1, 0, len(self.s) - 1)
         ds = s - self.s[k]
         inside = np.clip(ds, 0.0, self.length[k])
         local = np.empty((6, len(s)))
@@ -227,14 +227,14 @@ class Cubics:
     start: Floats  # (n,) road station, ascending
     coef: Floats  # (n, 4)
 
-    def evaluate(self, s: Floats, at: Floats) -> tuple[Floats, Floats]:
-        """Return values and first derivatives at stations `s`, by the records that apply at stations `at`.
+    def evaluate(self, s: Floats, lookup_s: Floats) -> tuple[Floats, Floats]:
+        """Return values and first derivatives at stations `s`, by the records that apply at stations `lookup_s`.
 
-        `at` differs from `s` at the ends of a section, where the record inside the section applies.
+        `lookup_s` differs from `s` at the ends of a section, where the record inside the section applies.
         """
         if not len(self.start):
             return np.zeros_like(s), np.zeros_like(s)
-        k = np.searchsorted(self.start, at, side="right") - 1
+        k = np.searchsorted(self.start, lookup_s, side="right") - 1
         before = k < 0
         k = np.maximum(k, 0)
         ds = s - self.start[k]
@@ -246,13 +246,14 @@ class Cubics:
         return value, slope
 
 
-def cubics(elements: Iterable[etree._Element], station: str, origin: float = 0.0) -> Cubics:
-    """Read polynomial records. `station`: the attribute with their start, which counts from `origin`.
+def cubics(elements: Iterable[etree._Element], s_attribute: str, origin: float = 0.0) -> Cubics:
+    """Read polynomial records. `s_attribute`: the attribute with their start, which counts from `origin`.
 
     Of records with the same start, the last one applies.
     """
     rows = [
-        (origin + number_attribute(e, station, 0.0), *(number_attribute(e, c, 0.0) for c in "abcd")) for e in elements
+        (origin + number_attribute(e, s_attribute, 0.0), *(number_attribute(e, c, 0.0) for c in "abcd"))
+        for e in elements
     ]
     rows.sort(key=lambda row: row[0])
     table = np.array(rows, dtype=np.float64).reshape(-1, 5)

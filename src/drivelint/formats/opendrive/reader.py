@@ -71,7 +71,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality) -> tuple[DrivingDirection, BuiltLanes]:
     """Build the lanes as for two-way traffic; build them again if their layout shows that the directions are wrong."""
     witnesses = DrivingSideStatements.collect(net, request)
-    first, noted = witnesses.two_way_direction(), len(quality.rows)
+    first, noted = witnesses.direction_on_two_way_roads(), len(quality.rows)
     lanes = build_lanelets(net, first, request.offset, quality)
     side = side_driven_on(
         [
@@ -95,7 +95,7 @@ def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality)
 
 def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
     return {
-        "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.strip.section,
+        "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.lane_section.section,
         "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
         "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
         "road_type": road_type(lane),

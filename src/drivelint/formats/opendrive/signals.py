@@ -174,5 +174,5 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
 
 def _contains_station(lane: Lanelet, s: float) -> bool:
     """Return whether the lanelet contains a road station; where two lanelets meet, only the later one does."""
-    end = lane.strip.end_m
-    return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)
+    end = lane.lane_section.end_m
+    return lane.lane_section.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

@@ -47,7 +47,7 @@ def speed_limit_rows(
     for row in recorded_rows:
         records[row["lanelet_id"]].append(row)
     signed: dict[str, Rows] = {}
-    for row in _sign_rows(lanes, links, signals, records):
+    for row in _sign_limit_rows(lanes, links, signals, records):
         signed.setdefault(row["lanelet_id"], []).append(row)
     rows: Rows = []
     contradicted = []
@@ -71,7 +71,7 @@ def speed_limit_rows(
     return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
 
 
-def _sign_rows(
+def _sign_limit_rows(
     lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, records: Mapping[str, Rows]
 ) -> Iterable[dict[str, Any]]:
     """Yield a row for each stretch of a lanelet to which a sign applies."""

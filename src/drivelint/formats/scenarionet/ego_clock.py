@@ -19,15 +19,15 @@ _LEAST_SPEED_MPS: Final = 2.0
 """Below this speed, the ego moves by less than 4 cm per message, so that noise of 2 cm hides a lost message."""
 _COMPARED_STEPS_PER_SIDE: Final = 4
 """A step is compared with this number of steps on each side."""
-_MESSAGE_TOLERANCE: Final = 0.4
+_MESSAGE_COUNT_TOLERANCE: Final = 0.4
 """A step over lost messages is longer by a whole number of messages, give or take this share of a message."""
-_MOST_LOST_MESSAGES: Final = 10
+_MOST_LOST_MESSAGES_PER_STEP: Final = 10
 """A step that would span more lost messages is not taken for one."""
 _SHORT_STEP_SHARE: Final = 0.8
 """A step that advances by less than this share of the usual step is the seam between the stream and the frames."""
-_LAST_STEPS: Final = 20
+_EXAMINED_LAST_STEPS: Final = 20
 """The seam lies within this number of steps from the end: the stream lacks no more steps than messages were lost."""
-_MOST_SHIFT_S: Final = 0.5
+_MOST_CLOCK_SHIFT_S: Final = 0.5
 
 
 class EgoTrack(NamedTuple):
@@ -56,13 +56,15 @@ def track_at_steps(place: Floats, heading: Floats, t_s: Floats, message_period_s
     longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_period_s
     whole = np.round(longer)
     n_lost = np.where(
-        (whole >= 1) & (whole <= _MOST_LOST_MESSAGES) & (np.abs(longer - whole) < _MESSAGE_TOLERANCE), whole, 0.0
+        (whole >= 1) & (whole <= _MOST_LOST_MESSAGES_PER_STEP) & (np.abs(longer - whole) < _MESSAGE_COUNT_TOLERANCE),
+        whole,
+        0.0,
     )
-    seam = _first_step_after_stream(place, usual * period, moving)
+    seam = _first_step_after_message_stream(place, usual * period, moving)
     n_lost[seam - 1 :] = 0.0
     stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_period_s * n_lost)][:seam]
     shift = t_s[seam] - _time_nearest_to_point(place[seam], place[:seam], stream) if seam < n else np.nan
-    shift = shift if abs(shift) <= _MOST_SHIFT_S else np.nan
+    shift = shift if abs(shift) <= _MOST_CLOCK_SHIFT_S else np.nan
     if not n_lost.any() and np.isnan(shift):
         return EgoTrack(place, heading, 0, np.nan)
     stream += np.nan_to_num(shift)
@@ -83,20 +85,20 @@ def _usual_speed(speed: Floats) -> Floats:
     )
 
 
-def _first_step_after_stream(place: Floats, usual_step_m: Floats, moving: Mask) -> int:
+def _first_step_after_message_stream(place: Floats, usual_step_m: Floats, moving: Mask) -> int:
     """Return the first step (1 ... T - 1) that is not from the stream; T if all are from it."""
     n = len(place)
     step = np.diff(place, axis=0)
     ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
     short = (step[1:] * ahead).sum(axis=1) < _SHORT_STEP_SHARE * usual_step_m[1:]
     found = np.flatnonzero(short & moving[1:]) + 2
-    found = found[found > n - 1 - _LAST_STEPS]
+    found = found[found > n - 1 - _EXAMINED_LAST_STEPS]
     return int(found[0]) if len(found) else n
 
 
 def _time_nearest_to_point(point: Floats, place: Floats, t_s: Floats) -> float:
     """Return when a track, in its last steps, is nearest to a point; beyond its end, the track is extended by a straight line."""
-    first = max(0, len(place) - _LAST_STEPS)
+    first = max(0, len(place) - _EXAMINED_LAST_STEPS)
     a, b = place[first:-1], place[first + 1 :]
     way = b - a
     share = ((point - a) * way).sum(axis=1) / np.maximum((way * way).sum(axis=1), 1e-12)

@@ -53,11 +53,11 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     dataset, t_s = scenario.dataset, times_s(scenario.metadata)
     tracks = read_tracks(scenario, t_s)
     findings = [
-        *sources.swap_length_and_width(tracks, dataset),
+        *sources.correct_swapped_length_and_width(tracks, dataset),
         *sources.drop_differenced_velocities(tracks),
-        *sources.drop_false_stops(tracks),
+        *sources.drop_false_zero_last_velocities(tracks),
     ]
-    is_interpolated = sources.is_interpolated(tracks, dataset)
+    is_interpolated = sources.is_actor_interpolated(tracks, dataset)
     if is_interpolated.any():
         findings += sources.give_keyframe_velocities(tracks, is_interpolated, dataset.steps_per_keyframe)
     of_ego, notes = _correct_ego_track(tracks, scenario, is_interpolated)

@@ -23,7 +23,7 @@ _LONG_CLASSES: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_V
 _MOVING_MPS: Final = 1.0
 _LEAST_DISTINCT_DIFFERENCE_MPS: Final = 0.05
 _SAME_VELOCITY_TOLERANCE_MPS: Final = 0.02
-_SAME_VELOCITY_SHARE: Final = 0.01
+_SAME_VELOCITY_REL_TOLERANCE: Final = 0.01
 """A velocity equals a difference of positions if both differ by less than `_SAME_VELOCITY_TOLERANCE_MPS` plus this share. (Rounded times
 change it by under 0.1 %.)"""
 _LEAST_SAME_SHARE: Final = 0.9
@@ -43,7 +43,7 @@ def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
     is_ego = np.arange(len(tracks.ids)) == tracks.ego
     findings = []
     for actors, owner in ((is_ego, "the ego"), (~is_ego, "the others")):
-        if (when := _when_differences_apply(tracks, actors)) is None:
+        if (when := _early_or_late_if_differences(tracks, actors)) is None:
             continue
         n = int((actors[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
         tracks.velocity[actors] = np.nan
@@ -55,7 +55,7 @@ def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
     return findings
 
 
-def _when_differences_apply(tracks: Tracks, actors: Mask) -> str | None:
+def _early_or_late_if_differences(tracks: Tracks, actors: Mask) -> str | None:
     """Return early or late if the velocities of these actors are differences of the positions; None if they are not.
 
     This shows only where an actor accelerates, brakes or turns, so that the displacements before and after differ.
@@ -67,13 +67,13 @@ def _when_differences_apply(tracks: Tracks, actors: Mask) -> str | None:
         return None
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
-        same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
+        same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_REL_TOLERANCE * np.hypot(*np.moveaxis(step, 2, 0))
         if same[tells].mean() > _LEAST_SAME_SHARE:
             return when
     return None
 
 
-def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
+def drop_false_zero_last_velocities(tracks: Tracks) -> list[QualityFinding]:
     """Set the last velocity of a track to NaN, in place, if it is 0 although the actor moves."""
     ends = tracks.present.copy()
     ends[:, :-1] &= ~tracks.present[:, 1:]
@@ -88,7 +88,7 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
     return [QualityFinding.of_actors("velocity_unknown", "warning", message, ids)]
 
 
-def is_interpolated(tracks: Tracks, dataset: DatasetFacts) -> Mask:
+def is_actor_interpolated(tracks: Tracks, dataset: DatasetFacts) -> Mask:
     """Return for each actor (n,) whether its positions are interpolated between keyframes, that is, lie evenly on straight lines."""
     every = dataset.steps_per_keyframe
     if not every or len(tracks.t_s) < every + 1:
@@ -125,7 +125,7 @@ def give_keyframe_velocities(tracks: Tracks, actors: Mask, steps_per_keyframe: i
     )
     between[~tracks.present[actors]] = np.nan
     tracks.velocity[actors] = between
-    moving_ids = [tracks.ids[i] for i in np.flatnonzero(actors & (_extent_m(tracks) > _LEAST_MOTION_M))]
+    moving_ids = [tracks.ids[i] for i in np.flatnonzero(actors & (_track_extents_m(tracks) > _LEAST_MOTION_M))]
     if not moving_ids:
         return []
     period_s = float(np.median(np.diff(t_s)))
@@ -140,7 +140,7 @@ def give_keyframe_velocities(tracks: Tracks, actors: Mask, steps_per_keyframe: i
     ]
 
 
-def _extent_m(tracks: Tracks) -> Floats:
+def _track_extents_m(tracks: Tracks) -> Floats:
     """Return the extent in metres of each actor's places (n,), along x or y, whichever is larger."""
     seen = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
     with np.errstate(invalid="ignore"):
@@ -148,7 +148,7 @@ def _extent_m(tracks: Tracks) -> Floats:
     return np.asarray(np.nan_to_num(spread).max(axis=1), np.float64)
 
 
-def swap_length_and_width(tracks: Tracks, dataset: DatasetFacts) -> list[QualityFinding]:
+def correct_swapped_length_and_width(tracks: Tracks, dataset: DatasetFacts) -> list[QualityFinding]:
     """Exchange length and width, in place, of vehicles that move along their short side.
 
     The ego's are also exchanged if the data set is known to exchange them. Without such evidence, length and width become NaN.

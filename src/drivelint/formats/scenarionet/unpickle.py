@@ -197,10 +197,10 @@ class _PickleMachine:
 
     def push_memo_value(self, at: int, width: int) -> int:
         number = int.from_bytes(self._bytes_at(at, width), "little")
-        self.stack.append(self.memo[number] if number in self.memo else self._coordinates_of_memo_number(number))
+        self.stack.append(self.memo[number] if number in self.memo else self._point_of_memo_number(number))
         return at + width
 
-    def _coordinates_of_memo_number(self, number: int) -> Any:
+    def _point_of_memo_number(self, number: int) -> Any:
         """Return the point with this memo number, of a list in `points`."""
         k = bisect_right(self.points, number, key=lambda each: each.first_memo_number) - 1
         if k < 0 or number >= self.points[k].first_memo_number + self.points[k].n:

@@ -61,7 +61,7 @@ def boxes_of(row_actors: RowActors, types: Mapping[str, VehicleType], options: I
         np.array([getattr(t, side) for t in vehicle_types], np.float64)[row_actors.type_code]
         for side in ("length_m", "width_m")
     )
-    changing = _has_other_length(row_actors, length)
+    changing = _has_length_unlike_track(row_actors, length)
     length[changing] = width[changing] = np.nan
     sizeless = np.isnan(length) & ~changing
     ahead = np.where(changing, np.nan, np.nan_to_num(length) / 2)
@@ -78,7 +78,7 @@ def boxes_of(row_actors: RowActors, types: Mapping[str, VehicleType], options: I
     return Boxes(actor_class, length, width, ahead, findings)
 
 
-def _has_other_length(row_actors: RowActors, length: Floats) -> Mask:
+def _has_length_unlike_track(row_actors: RowActors, length: Floats) -> Mask:
     """Return which rows have no length, or another length than most rows of their track, if any row of the track has a length."""
     some = np.zeros(len(row_actors.ids), row_actors.type_code.dtype)
     some[row_actors.actor] = row_actors.type_code

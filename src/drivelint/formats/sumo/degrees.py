@@ -49,7 +49,7 @@ def net_positions(
     `actor` (n,): the actor of each row; `net`: the map that the user gives. Errors: `TraceError` for degrees that cannot be converted.
     """
     xy = np.stack([rows.numbers("x"), rows.numbers("y")], axis=1)
-    if not _are_degrees(path, rows, xy, actor, net):
+    if not _are_positions_degrees(path, rows, xy, actor, net):
         return xy, []
     if net is None:
         raise TraceError(f"{path}: {_DEGREES_MESSAGE}: {_REMEDY}")
@@ -67,7 +67,7 @@ def net_positions(
     return found, _rounding_findings(xy[placed], net)
 
 
-def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
+def _are_positions_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
     points = xy[np.isfinite(xy).all(axis=1)]
     if not len(points):
         return False

@@ -24,7 +24,7 @@ from drivelint.formats.sumo.fcd_tables import column_groups, read_csv, read_parq
 from drivelint.formats.sumo.fcd_xml import ROOT_TAG, read_xml
 from drivelint.formats.sumo.lights import add_light_states
 from drivelint.formats.sumo.riders import is_riding
-from drivelint.formats.sumo.rows import CARRIED, CONTAINER, KINDS, PERSON, UNKNOWN, VEHICLE
+from drivelint.formats.sumo.rows import CONTAINER, KINDS, PERSON, PERSON_OR_CONTAINER, UNKNOWN_KIND, VEHICLE
 from drivelint.formats.sumo.vehicle_types import type_and_original, types_and_notes
 from drivelint.formats.tables import parquet
 from drivelint.phrases import name_list
@@ -47,7 +47,7 @@ takes_mapping: Final = True
 HEAD_BYTES = 65536
 _LARGEST_TIME_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
-_KIND_OF_CLASS: Final = {None: UNKNOWN, "pedestrian": PERSON, "object": CONTAINER}
+_KIND_OF_CLASS: Final = {None: UNKNOWN_KIND, "pedestrian": PERSON, "object": CONTAINER}
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
@@ -150,7 +150,7 @@ def _times_ns(rows: Rows) -> Times:
 
 def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     """Return the kinds of the rows. A table's column names do not show the kind of a row; the row's type does, if it is known."""
-    open_ = np.isin(rows.kind, (UNKNOWN, CARRIED))
+    open_ = np.isin(rows.kind, (UNKNOWN_KIND, PERSON_OR_CONTAINER))
     if not open_.any():
         return rows.kind
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
@@ -160,7 +160,7 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
         names.indices.to_numpy()
     ]
     # a carried person stays a person whatever vehicle class its type has
-    told = open_ & (by_type != UNKNOWN) & ~((rows.kind == CARRIED) & (by_type == VEHICLE))
+    told = open_ & (by_type != UNKNOWN_KIND) & ~((rows.kind == PERSON_OR_CONTAINER) & (by_type == VEHICLE))
     return np.where(told, by_type, rows.kind)
 
 
@@ -171,7 +171,7 @@ def _actor_ids_indices_and_notes(rows: Rows) -> tuple[list[str], NDArray[np.int3
     """
     encoded = pc.dictionary_encode(rows.table["id"]).combine_chunks()
     ids, actor = [str(each) for each in encoded.dictionary.to_pylist()], encoded.indices.to_numpy().astype(np.int32)
-    is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
+    is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN_KIND))
     if is_vehicle.all():
         return ids, actor, []
     part = np.where(is_vehicle, 0, np.where(rows.kind == CONTAINER, CONTAINER, PERSON))
@@ -201,7 +201,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     xy, findings = net_positions(path, rows, actor, options.map)
     yaw = wrap_angles(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)
-    is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
+    is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN_KIND))
     speed = rows.numbers("speed")
     # in a table, these columns of a person may contain other values
     accel, signals = (np.where(is_vehicle, rows.numbers(name), np.nan) for name in ("acceleration", "signals"))

@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
 from drivelint.errors import TraceError
-from drivelint.formats.sumo.rows import ATTRIBUTES, CARRIED, KINDS, UNKNOWN, VEHICLE, Rows, typed_rows
+from drivelint.formats.sumo.rows import ATTRIBUTES, KINDS, PERSON_OR_CONTAINER, UNKNOWN_KIND, VEHICLE, Rows, typed_rows
 from drivelint.formats.tables import parquet
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Columns = dict[str, str]
 
 _TIME_COLUMN: Final = "timestep_time"
-_PLAIN_COLUMNS: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
+_COLUMNS_WITHOUT_ELEMENT_NAME: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's if all of these are present."""
 _NUMBER_COLUMNS: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
@@ -44,7 +44,7 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     The element is "" if the columns are not named after an element.
     """
     there = set(names)
-    if there >= _PLAIN_COLUMNS:
+    if there >= _COLUMNS_WITHOUT_ELEMENT_NAME:
         return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
     groups = {}
     for kind in KINDS if _TIME_COLUMN in there else ():
@@ -122,12 +122,12 @@ def _kinds_and_columns(
     kind = _kinds_by_lane(n, columns)
     null_text = pa.scalar(None, pa.string())
     if "vehicle" in columns:
-        carried = pa.array(kind == CARRIED)
+        carried = pa.array(kind == PERSON_OR_CONTAINER)
         columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), null_text)
     for name in _VEHICLE_ATTRIBUTES:
         if name in columns and not (kind == VEHICLE).all():
             texts = columns[name].cast(pa.string())
-            may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER_PATTERN))
+            may_be = pc.and_(pa.array(kind != PERSON_OR_CONTAINER), pc.match_substring_regex(texts, _NUMBER_PATTERN))
             columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, null_text)
     return kind, columns
 
@@ -139,7 +139,7 @@ def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) ->
     """
     lane, edge = (_is_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
     carried = edge & ~lane & lane.any()
-    return np.select([lane, carried], [np.int8(VEHICLE), np.int8(CARRIED)], np.int8(UNKNOWN))
+    return np.select([lane, carried], [np.int8(VEHICLE), np.int8(PERSON_OR_CONTAINER)], np.int8(UNKNOWN_KIND))
 
 
 def _is_filled(column: pa.ChunkedArray) -> Mask:

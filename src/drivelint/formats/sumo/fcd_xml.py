@@ -58,7 +58,7 @@ def columns_from_lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] 
     columns = [f"{i}" for i in range(len(parts))]
     other_lines: list[tuple[int, str]] = []
 
-    def keep_other_line(row: Any) -> str:
+    def keep_line_without_vehicle(row: Any) -> str:
         other_lines.append((row.number, row.text.strip()))
         return "skip"
 
@@ -69,7 +69,7 @@ def columns_from_lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] 
             # one thread, because only then line numbers are known
             pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
             pa_csv.ParseOptions(
-                delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=keep_other_line
+                delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=keep_line_without_vehicle
             ),
             pa_csv.ConvertOptions(
                 column_types=dict.fromkeys(read_columns, pa.string()),

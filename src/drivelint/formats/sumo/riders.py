@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow.compute as pc
 
-from drivelint.formats.sumo.rows import CARRIED, CONTAINER, PERSON, UNKNOWN, VEHICLE
+from drivelint.formats.sumo.rows import CONTAINER, PERSON, PERSON_OR_CONTAINER, UNKNOWN_KIND, VEHICLE
 
 if TYPE_CHECKING:
     from drivelint.arrays import Mask
@@ -25,8 +25,8 @@ def is_riding(rows: Rows) -> Mask:
     """
     said = rows.table["vehicle"]
     is_rider: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
-    carried = np.isin(rows.kind, (PERSON, CONTAINER, CARRIED)) & pc.is_null(said).to_numpy()
-    may_ride = carried | (rows.kind == UNKNOWN)
+    carried = np.isin(rows.kind, (PERSON, CONTAINER, PERSON_OR_CONTAINER)) & pc.is_null(said).to_numpy()
+    may_ride = carried | (rows.kind == UNKNOWN_KIND)
     if not may_ride.any():
         return is_rider
     time, x, y = (rows.numbers(name) for name in ("time", "x", "y"))
@@ -37,7 +37,7 @@ def is_riding(rows: Rows) -> Mask:
     kind = rows.kind[near]
     first_vehicle, first_unknown = (
         _first_row_by_place(place, kind == VEHICLE),
-        _first_row_by_place(place, kind == UNKNOWN),
+        _first_row_by_place(place, kind == UNKNOWN_KIND),
     )
     # a vehicle is written before its passengers, and a row of unknown kind may be a vehicle
     beside = (first_vehicle[place] < len(near)) | (first_unknown[place] < np.arange(len(near)))

@@ -31,14 +31,16 @@ _U_TURN_DIRECTION: Final = "t"
 def signal_and_stop_line_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
     """Return rows of `traffic_signal` and of `stop_line`: a stop line is at the end of each lane with a light or a stop sign."""
     links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
-    signals, lines = _light_rows_and_ends(links, lanes)
-    signed, stops = _sign_rows_and_stops(root, links, lanes)
+    signals, lines = _light_rows_and_ending_lanes(links, lanes)
+    signed, stops = _sign_rows_and_stop_lanes(root, links, lanes)
     lines |= stops
     rows = [stop_line_row(f"end of {name}", name, lanes[name].line.length, "connection") for name in sorted(lines)]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
 
 
-def _light_rows_and_ends(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
+def _light_rows_and_ending_lanes(
+    links: list[etree._Element], lanes: Mapping[str, BoundedLane]
+) -> tuple[Rows, set[str]]:
     """Return a row for each signal head and lanelet in the junction to which it applies, and the lanes that end at a head.
 
     A head's id is `<light>_<link index>`, as SUMO writes it into OpenDRIVE.
@@ -62,7 +64,7 @@ def _light_rows_and_ends(links: list[etree._Element], lanes: Mapping[str, Bounde
     return rows, ends
 
 
-def _sign_rows_and_stops(
+def _sign_rows_and_stop_lanes(
     root: etree._Element, links: list[etree._Element], lanes: Mapping[str, BoundedLane]
 ) -> tuple[Rows, set[str]]:
     kinds = {junction.get("id"): junction.get("type") for junction in root.iterfind("junction")}

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 KINDS: Final = ("vehicle", "person", "container")
 """The elements of a step."""
 VEHICLE, PERSON, CONTAINER = range(3)
-CARRIED: Final = 3
+PERSON_OR_CONTAINER: Final = 3
 """The kind of a row that is a person or a container; which of them is not known."""
-UNKNOWN: Final = -1
+UNKNOWN_KIND: Final = -1
 NUMBER_ATTRIBUTES: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
 ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBER_ATTRIBUTES)
 """The attributes that are read."""
@@ -32,8 +32,8 @@ class Rows(NamedTuple):
     """The rows of a log: `table` has `time` and `ATTRIBUTES`; a missing text is "", a missing number NaN.
 
     `table["vehicle"]`: the vehicle in which a passenger rides, "": it is no passenger, NULL: not stated. `kind` (n,): index of `KINDS`,
-    `CARRIED` or `UNKNOWN`. `geo_option`: whether SUMO's options, which may precede the data, ask for longitude and latitude; None: there
-    are no options. `lacks_end`: the end tag of the file was missing.
+    `PERSON_OR_CONTAINER` or `UNKNOWN_KIND`. `geo_option`: whether SUMO's options, which may precede the data, ask for longitude and
+    latitude; None: there are no options. `lacks_end`: the end tag of the file was missing.
     """
 
     table: pa.Table

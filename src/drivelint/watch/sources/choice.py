@@ -45,7 +45,7 @@ def source_of_watch(options: WatchOptions, progress: Progress) -> Iterator[Sourc
 
 def _source_by_options(options: WatchOptions, folder: Path) -> Source:
     if options.replay is None:
-        _refuse_source_with_command(options)
+        _refuse_source_unfit_for_command(options)
         return sources.open_source(options.source, folder, idle_s=options.idle_s, every_s=options.every_s)
     if options.command:
         raise UsageError("--replay watches a finished log: there is no program to start")
@@ -54,7 +54,7 @@ def _source_by_options(options: WatchOptions, folder: Path) -> Source:
     )
 
 
-def _refuse_source_with_command(options: WatchOptions) -> None:
+def _refuse_source_unfit_for_command(options: WatchOptions) -> None:
     """Raise `UsageError` for a source that cannot be written by a program that the watch starts."""
     if not options.command:
         return

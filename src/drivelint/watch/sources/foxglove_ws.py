@@ -10,7 +10,7 @@ from drivelint.errors import TraceError
 from drivelint.watch.source import WindowFileSource
 from drivelint.watch.sources.foxglove_client import FoxgloveClient
 from drivelint.watch.sources.mcap_file import McapSource
-from drivelint.watch.sources.recordings import McapRecording, write_errors_as_trace_errors
+from drivelint.watch.sources.recordings import McapRecording, convert_write_errors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,7 +57,7 @@ class FoxgloveSource(WindowFileSource):
         return self._reader.read(0.0)
 
     def _write_to_recording(self, messages: Sequence[LiveMessage]) -> None:
-        with write_errors_as_trace_errors(self.recording):
+        with convert_write_errors(self.recording):
             if self._writer is None:
                 self._writer = McapRecording(self.recording)
             self._writer.add(messages)
@@ -72,7 +72,7 @@ class FoxgloveSource(WindowFileSource):
             raise TraceError(f"{self._uri}: no message came")
         self._reader.write_window(frames, path, may_omit_earlier_data=may_omit_earlier_data)
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """See `Source`. The sender of the messages cannot be ended from here."""
 
     def close(self) -> None:
@@ -85,5 +85,5 @@ class FoxgloveSource(WindowFileSource):
             self._write_to_recording(rest)
         self._reader.close()
         if self._writer is not None:
-            with write_errors_as_trace_errors(self.recording):
+            with convert_write_errors(self.recording):
                 self._writer.finish()

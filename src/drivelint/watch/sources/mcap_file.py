@@ -149,7 +149,7 @@ class McapSource(WindowFileSource):
             self._static[message.channel] = content
         return message.with_content(self._static[message.channel].add_to_message(message.content))
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """See `Source`. The program that writes the file cannot be ended from here."""
 
     def close(self) -> None:

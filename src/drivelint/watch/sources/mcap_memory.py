@@ -70,7 +70,7 @@ def memory_for(channel: Channel, schema: str) -> ChannelMemory:
         return SceneMemory(channel.message_encoding)
     if kind in OSI_SCHEMAS or ROS_ROLE_BY_SCHEMA.get(kind) in {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
         return EmptyMemory()
-    return LatchedMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
+    return FirstAndRecentMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
 
 
 class EmptyMemory:
@@ -84,7 +84,7 @@ class EmptyMemory:
         return []
 
 
-class LatchedMemory:
+class FirstAndRecentMemory:
     """Keeps the first messages, without repeated equal ones, and the messages of the last `RECENT_NS`."""
 
     def __init__(self, most_first: int) -> None:

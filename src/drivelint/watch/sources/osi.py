@@ -94,7 +94,7 @@ class OsiSource(WindowFileSource):
             self._static = StaticContent(self._first, self._kind)
         return data if self._static is None else self._static.add_to_message(data)
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """See `Source`. The sender of the messages cannot be ended from here."""
 
     def close(self) -> None:

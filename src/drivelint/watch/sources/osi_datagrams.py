@@ -171,7 +171,7 @@ class MessageAssembler:
             return None
         if self._in_doubt:
             self._left_out += 1
-            self._in_doubt = self._is_hole_too_short(t_ns)
+            self._in_doubt = self._must_leave_out_next_message(t_ns)
             self.losses.distrusted += 1
             return None
         if self._last_ns is not None and t_ns > self._last_ns and not self._left_out:
@@ -180,7 +180,7 @@ class MessageAssembler:
         self._left_out = 0
         return message
 
-    def _is_hole_too_short(self, t_ns: int) -> bool:
+    def _must_leave_out_next_message(self, t_ns: int) -> bool:
         """Return whether the hole is still too short if the message at `t_ns` is the last one that is left out."""
         if self._last_ns is None:
             return False

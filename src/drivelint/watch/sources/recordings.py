@@ -27,7 +27,7 @@ _SEQUENCE_MODULUS: Final = 1 << 32
 
 
 @contextmanager
-def write_errors_as_trace_errors(path: Path) -> Iterator[None]:
+def convert_write_errors(path: Path) -> Iterator[None]:
     """Convert errors of the system within the block, such as a full disk, to `TraceError`."""
     try:
         yield

@@ -78,7 +78,7 @@ class Replay:
         """See `Source`."""
         return self.window_reader(frames, folder, options)()
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """Provide no more steps."""
         self._halted = True
 

@@ -16,7 +16,7 @@ from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.phrases import name_list
 from drivelint.watch.source import Frame, WindowFileSource
-from drivelint.watch.sources.recordings import write_errors_as_trace_errors
+from drivelint.watch.sources.recordings import convert_write_errors
 from drivelint.watch.sources.sumo_process import SumoProcess, SumoStep
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 LEAST_DECIMALS: Final = 4
 """The number of decimals that are recorded, unless the configuration requires more."""
-DEFAULT_SPAN_S: Final = 0.5
+DEFAULT_WINDOW_SPAN_S: Final = 0.5
 MOST_READ_SPAN_S: Final = 0.5
 """The most seconds that one `read` simulates, so that a contact halts the simulation soon."""
 _FCD_BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
@@ -44,7 +44,7 @@ _ACTOR_OMITTING_OPTIONS: Final = (
 """Options of a configuration with which SUMO does not write every actor."""
 
 
-def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSource:  # noqa: A001
+def open(name: str, folder: Path, *, span_s: float = DEFAULT_WINDOW_SPAN_S, until_s: float | None = None) -> SumoSource:  # noqa: A001
     """Start the simulation of a `*.sumocfg`, and return it as a source; it is recorded in a new folder within `folder`.
 
     Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message if it cannot start.
@@ -91,8 +91,8 @@ class SumoSource(WindowFileSource):
                 self._is_over = True
                 break
             step = self._sumo.step()
-            with write_errors_as_trace_errors(self.recording):
-                self._record(step)
+            with convert_write_errors(self.recording):
+                self._record_step(step)
             frames.append(
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
@@ -117,20 +117,20 @@ class SumoSource(WindowFileSource):
             lights.unlink(missing_ok=True)
         _companion_file(path, "vtypes").write_bytes(self._vtypes_xml(self._types))
 
-    def halt(self) -> None:
+    def end_sender_if_possible(self) -> None:
         """End the simulation."""
         self._is_over = True
         self._sumo.end()
 
     def close(self) -> None:
         """End the simulation and the recording."""
-        self.halt()
+        self.end_sender_if_possible()
         for file, end in self._files.values():
             if not file.closed:
-                with write_errors_as_trace_errors(self.recording), file:
+                with convert_write_errors(self.recording), file:
                     file.write(end)
 
-    def _record(self, step: SumoStep) -> None:
+    def _record_step(self, step: SumoStep) -> None:
         """Write a step to the recording at once, so that it is kept even if this process is killed."""
         self._append_to_file(self.recording, self._sumo.output_head, step.xml, _FCD_END)
         if step.lights:

@@ -58,7 +58,7 @@ class VehicleType(NamedTuple):
     width_m: float
 
 
-def find_sumo_program() -> tuple[str, str | None]:
+def find_sumo_program_and_home() -> tuple[str, str | None]:
     """Return the path of SUMO's program and, if it is known, SUMO_HOME. Errors: `UsageError` if SUMO is not installed.
 
     The program inside the package is used: the script of the same name starts it as a child, which would outlive the script.
@@ -166,7 +166,7 @@ class SumoProcess:
 
     def _start_and_connect(self, precision: int) -> None:
         """Start SUMO and connect to it; try another port if another program took the first."""
-        found, home = find_sumo_program()
+        found, home = find_sumo_program_and_home()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
         for start in range(_MOST_STARTS):
             with socket.create_server((HOST, 0)) as free:
