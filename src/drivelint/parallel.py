@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.run import CheckOptions, JudgedLogs
 
-_CHECK_PERIOD_S: Final = 0.2
+_INTERRUPTION_CHECK_PERIOD_S: Final = 0.2
 _GRACE_PERIOD_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
 
@@ -134,7 +134,7 @@ def _judge_in_workers(
             if interruption.requested:
                 for worker in running.values():
                     worker.interrupt()
-            for pipe in wait(list(running), timeout=_CHECK_PERIOD_S):
+            for pipe in wait(list(running), timeout=_INTERRUPTION_CHECK_PERIOD_S):
                 running[pipe].receive_message()  # type: ignore[index]
     finally:
         for worker in workers:
@@ -320,7 +320,7 @@ class _NotesSender(LogNotes):
         self._sender.send(_ProgressCall("add", (note,)))
 
 
-class _UnstoppableRulesOfWorker:
+class _UnstoppableRuleHandlerOfWorker:
     """The `UnstoppableRuleHandler` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
     def __init__(
@@ -357,7 +357,7 @@ def _run_worker(part: _PartOfLogs, pipe: Connection, parent: int) -> None:
 def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interruption) -> _PartOutcome:
     notes, handler = (
         _NotesSender(sender, part.n_logs),
-        _UnstoppableRulesOfWorker(part.limits_of_unstoppable_rules, sender),
+        _UnstoppableRuleHandlerOfWorker(part.limits_of_unstoppable_rules, sender),
     )
     with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         run_rules = run.RunRules.from_options(part.settings)
