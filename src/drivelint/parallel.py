@@ -125,7 +125,7 @@ def _judge_in_workers(
     recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING_STAGE, len(paths))
-    listener = _ProgressOfWorkers(progress, len(paths))
+    listener = _WorkerProgressDisplay(progress, len(paths))
     workers = [_Worker(_PartOfLogs(own, part, len(paths), is_output, {}), listener) for part in parts]
     try:
         for worker in workers:
@@ -190,7 +190,7 @@ def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
 
-class _ProgressOfWorkers:
+class _WorkerProgressDisplay:
     """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
@@ -211,7 +211,7 @@ class _Worker:
     `ended`: the outcome of the part; None: the process still runs.
     """
 
-    def __init__(self, part: _PartOfLogs, listener: _ProgressOfWorkers) -> None:
+    def __init__(self, part: _PartOfLogs, listener: _WorkerProgressDisplay) -> None:
         self.ended: _PartOutcome | None = None
         self._part = part
         self._listener = listener

@@ -57,7 +57,7 @@ MOST_STATES_FOR_ONE_PASS: Final = 10_000
 second pass."""
 _TABLES_READ_BY_EVALUATION: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
 """Tables that the evaluation itself reads, except those that only unknown verdicts need."""
-_COPIED_TABLES: Final = frozenset({"capability", "registration"})
+_TABLES_COPIED_FROM_DRIVE: Final = frozenset({"capability", "registration"})
 
 
 class RobustnessJudge:
@@ -199,7 +199,7 @@ class RobustnessJudge:
                 reads,
                 are_map_tables=False,
                 always_needed_tables=_TABLES_READ_BY_EVALUATION,
-                filled_tables=_COPIED_TABLES,
+                filled_tables=_TABLES_COPIED_FROM_DRIVE,
             )
             judged = [rules[name] for name in sorted(rules)]
             params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
