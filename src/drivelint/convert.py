@@ -22,7 +22,7 @@ from drivelint.formats.osi.metadata import CONVERTED_LOG_LIBRARY, ego_independen
 from drivelint.formats.tables import canonical, parquet
 from drivelint.phrases import name_list, one_line
 from drivelint.result.files import parquet_bytes_with_metadata
-from drivelint.result.publishing import OutputError, prepare_folder, publish
+from drivelint.result.publishing import OutputError, ensure_writable_folder, publish
 from drivelint.road.map_reader import MapSource
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     if trace.geo_reference is not None:
         x, y, yaw = trace.geo_offset
         trace = _with_log_values(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
-    prepare_folder(request.out)
+    ensure_writable_folder(request.out)
     write = _write_mcap if request.to == "mcap" else _write_parquet
     files = write(target, trace, road, as_recorded=options.as_recorded)
     notes = [*trace.notes, *of_road, *_notes_on_check_options(request)]

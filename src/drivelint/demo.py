@@ -39,12 +39,12 @@ def write(out: Path) -> list[Path]:
     """
     files = contents()
     for name in files:
-        _require_own_file(out / name)
+        _refuse_to_overwrite_others_file(out / name)
     publish(out, files, {})
     return [out / name for name in files]
 
 
-def _require_own_file(path: Path) -> None:
+def _refuse_to_overwrite_others_file(path: Path) -> None:
     if not path.exists() and not path.is_symlink():
         return
     try:

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.run import CheckOptions, JudgedLogs
 
-_CHECK_PERIOD_S: Final = 0.2
+_INTERRUPTION_CHECK_PERIOD_S: Final = 0.2
 _GRACE_PERIOD_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
 
@@ -125,7 +125,7 @@ def _judge_in_workers(
     recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING_STAGE, len(paths))
-    listener = _ProgressOfWorkers(progress, len(paths))
+    listener = _WorkerProgressDisplay(progress, len(paths))
     workers = [_Worker(_PartOfLogs(own, part, len(paths), is_output, {}), listener) for part in parts]
     try:
         for worker in workers:
@@ -134,7 +134,7 @@ def _judge_in_workers(
             if interruption.requested:
                 for worker in running.values():
                     worker.interrupt()
-            for pipe in wait(list(running), timeout=_CHECK_PERIOD_S):
+            for pipe in wait(list(running), timeout=_INTERRUPTION_CHECK_PERIOD_S):
                 running[pipe].receive_message()  # type: ignore[index]
     finally:
         for worker in workers:
@@ -190,7 +190,7 @@ def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
 
-class _ProgressOfWorkers:
+class _WorkerProgressDisplay:
     """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
@@ -211,7 +211,7 @@ class _Worker:
     `ended`: the outcome of the part; None: the process still runs.
     """
 
-    def __init__(self, part: _PartOfLogs, listener: _ProgressOfWorkers) -> None:
+    def __init__(self, part: _PartOfLogs, listener: _WorkerProgressDisplay) -> None:
         self.ended: _PartOutcome | None = None
         self._part = part
         self._listener = listener
@@ -320,7 +320,7 @@ class _NotesSender(LogNotes):
         self._sender.send(_ProgressCall("add", (note,)))
 
 
-class _UnstoppableRulesOfWorker:
+class _UnstoppableRuleHandlerOfWorker:
     """The `UnstoppableRuleHandler` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
     def __init__(
@@ -357,7 +357,7 @@ def _run_worker(part: _PartOfLogs, pipe: Connection, parent: int) -> None:
 def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interruption) -> _PartOutcome:
     notes, handler = (
         _NotesSender(sender, part.n_logs),
-        _UnstoppableRulesOfWorker(part.limits_of_unstoppable_rules, sender),
+        _UnstoppableRuleHandlerOfWorker(part.limits_of_unstoppable_rules, sender),
     )
     with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         run_rules = run.RunRules.from_options(part.settings)

@@ -339,7 +339,7 @@ def _missing_map_messages(drive: Drive) -> list[str]:
 
 def _judge_copies(session: JudgingSession, progress: Progress, memory: MemoryLimit) -> None:
     """Judge the copies that are not judged yet, even after an interruption."""
-    if session.n_waiting:
+    if session.n_waiting_drives:
         findings = one_finding_per_event(memory.run_job(collect.findings).to_pylist())
         # the number of findings is shown before the copies are judged
         word = "finding" if len(findings) == 1 else "findings"

@@ -36,7 +36,7 @@ def profile(place: Place) -> list[Row]:
         bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None)
         bench._load_drives([Drive(trace, road)])
         for step in needed_derivations(tables):
-            if not step.of_the_map:
+            if not step.is_of_map_only:
                 begin = time.perf_counter()
                 plan = con.execute(
                     f"EXPLAIN (ANALYZE, FORMAT JSON) INSERT INTO {step.table} BY NAME {step.sql}"

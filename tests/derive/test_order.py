@@ -40,7 +40,7 @@ FROM step JOIN visited_cell USING (drive_id) GROUP BY ALL"""
 CELL = "SELECT drive_id, max(t_ns) AS cell FROM step GROUP BY drive_id"
 
 
-@pytest.mark.parametrize(("most", "n"), [(derive.MOST_STATES_TO_ASK_FIRST, 0), (-1, 5)])
+@pytest.mark.parametrize(("most", "n"), [(derive.MOST_STATES_FOR_EMPTINESS_TEST, 0), (-1, 5)])
 def test_without_an_occasion_a_table_of_few_states_stays_empty(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, most: int, n: int
 ) -> None:
@@ -48,7 +48,7 @@ def test_without_an_occasion_a_table_of_few_states_stays_empty(
     made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
     monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
-    monkeypatch.setattr(derive, "MOST_STATES_TO_ASK_FIRST", most)
+    monkeypatch.setattr(derive, "MOST_STATES_FOR_EMPTINESS_TEST", most)
     derive.derive(con, ["step"], are_map_tables=False, always_needed_tables=())
     assert con.execute("SELECT count(*) FROM step").fetchone() == (n,)
 

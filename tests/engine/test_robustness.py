@@ -14,8 +14,8 @@ from drivelint.engine.robustness.question import (
     LEAST_KEEPING_SHARE,
     N_COPIES,
     SMALL_MARGIN,
-    Question,
-    grouped_by_weight,
+    RobustnessQuestion,
+    worst_near_and_other_questions,
 )
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
@@ -132,9 +132,9 @@ def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do() -> None:
         assert share**few < by_most + 0.011, share
 
 
-def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Question:
+def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> RobustnessQuestion:
     times = {"t_ref_ns": None, "t_start_ns": 0, "t_end_ns": 300_000_000, "t_worst_ns": 100_000_000, "profile": None}
-    return Question({"margin": margin, **times}, catalogue.load_rules(())[rule_id])
+    return RobustnessQuestion({"margin": margin, **times}, catalogue.load_rules(())[rule_id])
 
 
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
@@ -175,7 +175,7 @@ def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: b
     asked = question(-2.0)
     asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0))
     assert asked.is_settled is suffice
-    assert not asked.is_sure
+    assert not asked.is_finding_certain
 
 
 def test_a_share_of_ones_own_is_that_of_all_copies() -> None:
@@ -195,7 +195,7 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
         each.finding.update(of_one)
     other = question(-0.5)
     other.finding.update(of_one | {"ego_id": "1"})
-    gravest, near, others = grouped_by_weight([*asked, other])
+    gravest, near, others = worst_near_and_other_questions([*asked, other])
     assert ([q.finding["margin"] for q in gravest], [q.finding["margin"] for q in near]) == ([-4.0, -0.5], [-0.2])
     assert sorted(q.finding["margin"] or 0.0 for q in others) == [-2.0, -1.0, 0.0]
 
@@ -210,7 +210,7 @@ def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
     assert asked.n_copies == 0  # the copies before these are still to be judged
 
 
-def long_question() -> Question:
+def long_question() -> RobustnessQuestion:
     """Return a finding whose stretch lasts longer than its first window."""
     asked = question(-2.0)
     asked.finding["t_end_ns"] = 10_000_000_000

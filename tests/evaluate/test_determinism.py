@@ -40,7 +40,7 @@ def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
 def database(drives: tuple[str, ...], *, threads: int, order: str) -> duckdb.DuckDBPyConnection:
     """Fill a database in SQL: rounded values, so that the least margin has many ties; NULLs, holes, an object that
     comes and goes."""
-    con = store.open_as_is()
+    con = store.open_without_creating_tables()
     con.execute(f"SET threads={threads}")
     con.execute("SET preserve_insertion_order=false")
     store.create_tables(con)

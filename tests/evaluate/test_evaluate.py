@@ -26,7 +26,7 @@ READS = {"reads": '["ego_state"]'}
 
 @pytest.fixture
 def con() -> Iterator[duckdb.DuckDBPyConnection]:
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         store.create_tables(con)
         store.create_macros(con)
         for drive, ego in (("a", "1"), ("a", "2"), ("b", "1")):

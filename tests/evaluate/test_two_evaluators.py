@@ -29,7 +29,7 @@ BOTH = {"reads": '["ego_state", "exit_taken"]'}
 
 @pytest.fixture(scope="module")
 def con() -> duckdb.DuckDBPyConnection:
-    con = store.open_as_is()
+    con = store.open_without_creating_tables()
     con.execute("SET threads=2")
     store.create_tables(con)
     store.create_macros(con)

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from drivelint.convert import ConvertRequest, convert
+from drivelint.drivelint_files import RESULT_GLOBS_WITH_LOG_SUFFIX, DrivelintFiles
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.own_files import RESULT_GLOBS, OwnFiles
 from drivelint.result.folder import manifest_bytes
 from drivelint.result.names import RESULT_FILE_GLOBS, TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from tests.formats.logs import cars, mapping, read, table
@@ -78,7 +78,9 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
 
 
 def test_every_file_of_a_result_that_has_the_suffix_of_a_log_is_known() -> None:
-    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_GLOBS)
+    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(
+        RESULT_GLOBS_WITH_LOG_SUFFIX
+    )
 
 
 def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None:
@@ -106,7 +108,7 @@ def test_the_tables_of_an_audit_that_has_not_ended_are_no_logs(tmp_path: Path) -
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"written_by_drivelint": 3}'])
 def test_a_damaged_list_names_nothing(tmp_path: Path, content: str) -> None:
     (tmp_path / "files.json").write_text(content)
-    assert tmp_path / "a.parquet" not in OwnFiles(tmp_path)
+    assert tmp_path / "a.parquet" not in DrivelintFiles(tmp_path)
 
 
 def barred(monkeypatch: pytest.MonkeyPatch, folder: Path, error: OSError) -> None:

@@ -65,7 +65,7 @@ def test_geopandas_and_duckdb_read_the_same_valid_geometry(folder: Path, stem: s
     assert len(frame) > 0
     if stem != "tracks":  # a parked car's track is a line without length
         assert frame.is_valid.all()
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         kind = con.execute(f"SELECT DISTINCT typeof(geom) FROM '{path}'").fetchall()
         wkb = [bytes(each) for (each,) in con.execute(f"SELECT ST_AsWKB(geom) FROM '{path}'").fetchall()]
     assert kind == [("GEOMETRY",)]
@@ -92,7 +92,7 @@ def test_duckdb_forgets_that_there_is_no_reference(folder: Path, tmp_path: Path)
     If this fails, it may be. geopandas 1.2 takes such metres for degrees.
     """
     metres, moved = tmp_path / "metres.parquet", tmp_path / "moved.parquet"
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         con.execute(f"COPY (SELECT geom FROM '{folder / 'tracks.parquet'}') TO '{metres}' (FORMAT parquet)")
         place = "ST_SetCRS(ST_Point(8.4, 49.0), 'EPSG:4326')"
         sql = f"SELECT ST_Transform({place}, 'EPSG:4326', 'EPSG:25832', always_xy := true) AS geom"
@@ -204,6 +204,6 @@ def test_places_on_the_earth_are_said_to_be_so(result: Result, stem: str, primar
     assert frame["geom_lonlat"].crs.equals("OGC:CRS84")
     assert [(each.x, each.y) for each in frame["geom_lonlat"][:-1]] == list(zip(lon, lat, strict=True))[:-1]
     assert frame["geom_lonlat"][len(frame) - 1] is None
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         said = con.execute(f"SELECT DISTINCT ST_CRS(geom_lonlat) FROM '{path}' WHERE lat IS NOT NULL").fetchall()
     assert said == [("OGC:CRS84",)]

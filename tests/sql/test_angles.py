@@ -44,7 +44,7 @@ angles = st.lists(st.floats(-1e4, 1e4), min_size=1, max_size=50)
 
 
 def test_the_signs_of_remainders_in_this_duckdb() -> None:
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         found = con.execute("SELECT fmod(-1.0, 3.0), -1.0 % 3.0, fmod(1.0, -3.0), 1.0 % -3.0, -1 % 3").fetchall()
     assert [tuple(map(float, row)) for row in found] == [(2.0, -1.0, -2.0, 1.0, -1.0)]
     assert (math.fmod(-1.0, 3.0), float(np.mod(-1.0, 3.0))) == (-1.0, 2.0)

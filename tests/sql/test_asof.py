@@ -101,7 +101,7 @@ def test_right_sides_are_unique_by_the_columns_of_the_condition(tmp_path: Path) 
 
 @pytest.mark.parametrize(("equal", "n"), [(False, 1), (True, 1), (False, 100), (True, 100)])
 def test_the_guard_notices_equal_rows(equal: bool, n: int) -> None:
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         con.execute(f"CREATE TABLE a AS SELECT 1 AS x, range AS t FROM range({n})")
         con.execute(
             f"CREATE TABLE b AS FROM (VALUES (1, 0, 'first'), (1, {0 if equal else 1}, 'last'), (NULL, 0, 'no')) AS v(x, t, word)"
@@ -117,7 +117,7 @@ def test_the_guard_notices_equal_rows(equal: bool, n: int) -> None:
 def test_which_of_equal_rows_duckdb_returns() -> None:
     """If this fails, equal rows may no longer depend on the length of the left side."""
     found = []
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         con.execute("CREATE TABLE b AS FROM (VALUES (1, 0, 'first'), (1, 0, 'last')) AS v(x, t, word)")
         for n in (10, 1000):
             con.execute(f"CREATE OR REPLACE TABLE a AS SELECT 1 AS x, range AS t FROM range({n})")

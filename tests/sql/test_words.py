@@ -106,12 +106,12 @@ def test_the_nearest_word_is_named() -> None:
 def test_what_is_said_elsewhere_are_words_of_the_vocabularies() -> None:
     known = {name: set(vocabulary.words) for name, vocabulary in vocabularies().items()}
     assert known["signal"] == SIGNALS
-    assert list(words.words("event")) == list(EVENTS)
-    assert list(words.words("mode")) == list(ON_OFF_EVENTS)
+    assert list(words.words_of_vocabulary("event")) == list(EVENTS)
+    assert list(words.words_of_vocabulary("mode")) == list(ON_OFF_EVENTS)
     assert known["profile_name"] == set(load_profiles())
     assert set(trace.MOTOR_VEHICLES) < known["actor_class"]
     beside = signcodes.__file__
-    assert list(words.words("sign_kind")) == list(toml_beside(beside, "signcodes.toml"))
+    assert list(words.words_of_vocabulary("sign_kind")) == list(toml_beside(beside, "signcodes.toml"))
     names = toml_beside(beside, "signnames.toml")
     assert set(names["names"]) <= known["sign_kind"]
     turns = [*names["arrows"].values(), *names["directions"].values(), *map_kinds.TURNS_BY_LIGHT_ICON.values()]
@@ -148,10 +148,12 @@ def test_every_check_of_the_data_is_a_word_and_every_word_is_a_check() -> None:
     sources = "\n".join(file.read_text(encoding="utf-8") for file in sorted(SOURCES.rglob("*.py")))
     for name, found in check_ids().items():
         assert len(found) > 30
-        assert sorted(found - set(words.words(name))) == []
+        assert sorted(found - set(words.words_of_vocabulary(name))) == []
         # those that are put together or passed on stand in the sources too
         composed = {"no_indicator", "no_brake_light"}
-        assert [word for word in words.words(name) if f'"{word}"' not in sources and word not in composed] == []
+        assert [
+            word for word in words.words_of_vocabulary(name) if f'"{word}"' not in sources and word not in composed
+        ] == []
 
 
 def test_the_mark_of_a_column_says_its_vocabulary_and_what_it_has_besides() -> None:

@@ -48,7 +48,7 @@ class Result(NamedTuple):
     def rows(self, query: str) -> list[dict[str, Any]]:
         """Return the rows of a query in which `{name}` stands for a table of the results."""
         tables = {path.stem: f"read_parquet('{path}')" for path in self.folder.glob("*.parquet")}
-        with store.open_as_is() as con:
+        with store.open_without_creating_tables() as con:
             answer = con.execute(query.format(**tables))
             names = [column[0] for column in answer.description or ()]
             return [dict(zip(names, row, strict=True)) for row in answer.fetchall()]

@@ -79,7 +79,7 @@ class Recording(NamedTuple):
 @lru_cache(maxsize=3)
 def recording(folder: Path) -> Recording:
     """Return what a judged log has recorded; times are seconds since its start."""
-    with store.open_as_is(folder / "drivelint.duckdb", read_only=True) as con:
+    with store.open_without_creating_tables(folder / "drivelint.duckdb", read_only=True) as con:
         states = con.execute(
             """
             SELECT actor_id, any_value(actor_class), any_value(length_m), any_value(width_m),

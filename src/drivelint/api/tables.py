@@ -151,7 +151,7 @@ class TableSet:
         Errors: `DriveLintError` for a query that DuckDB refuses, or a statement that returns no table.
         """
         has_geometry = re.search(r"\bgeom(_lonlat)?\b|\bst_", query, re.IGNORECASE) is not None
-        with store.open_as_is() if has_geometry else duckdb.connect() as con:
+        with store.open_without_creating_tables() if has_geometry else duckdb.connect() as con:
             for name, rows in self._queryable_tables().items():
                 if has_geometry and name in self._shapes:
                     con.register("_wkb", with_geometry(rows, self._shapes[name]))

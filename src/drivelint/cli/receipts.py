@@ -12,8 +12,8 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.cli.restart import UNSTOPPABLE_RULES_VARIABLE
+from drivelint.drivelint_files import written_files
 from drivelint.memo import cache_folder
-from drivelint.own_files import written_files
 from drivelint.receipts import store
 from drivelint.receipts.program import receipt_key
 from drivelint.receipts.recorder import InputRecorder, record_inputs

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 EGO_CHOSEN_CHECK: Final = "ego_chosen"
 """The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, to distinguish this ego from
 the recorder's own."""
-EGOS_CHOSEN_CHECK: Final = "egos_chosen"
+ALL_EGOS_CHOSEN_CHECK: Final = "egos_chosen"
 """The id of the check (information only) for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
 """Shorter holes are clock jitter, as odometry at 100 Hz has; this is 2.5 periods of 10 Hz, the usual sampling rate in this field."""
@@ -67,7 +67,7 @@ class Absence(NamedTuple):
 
 def effective_ego_option(recording: Recording, ego_option: str | None) -> str | None:
     """Return the `--ego` of this run, or `all` if the log was converted with `--ego all`; None: use the ego that the log names."""
-    if ego_option is None and any(finding.check_id == EGOS_CHOSEN_CHECK for finding in recording.findings):
+    if ego_option is None and any(finding.check_id == ALL_EGOS_CHOSEN_CHECK for finding in recording.findings):
         return ALL_EGOS
     return ego_option
 
@@ -75,7 +75,7 @@ def effective_ego_option(recording: Recording, ego_option: str | None) -> str | 
 def recorder_egos(recording: Recording) -> list[str]:
     """Return the egos that carry the recorder: those that the log or its mapping names, without those that a user had chosen."""
     picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN_CHECK}
-    among_all = [finding.actor_id for finding in recording.findings if finding.check_id == EGOS_CHOSEN_CHECK]
+    among_all = [finding.actor_id for finding in recording.findings if finding.check_id == ALL_EGOS_CHOSEN_CHECK]
     if among_all:
         return [name for name in among_all if name is not None]
     return [name for name in dict.fromkeys(recording.ego_ids) if name not in picked]
@@ -223,7 +223,7 @@ def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[Qu
 
 def without_ego_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
     """Return the findings without those about the user's choice of the ego when the log was converted."""
-    return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN_CHECK, EGOS_CHOSEN_CHECK}]
+    return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN_CHECK, ALL_EGOS_CHOSEN_CHECK}]
 
 
 def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
@@ -234,7 +234,7 @@ def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[Qu
     if asks_for_all(ego_option, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
         names: list[str | None] = [*own] if own else [None]
-        return [QualityFinding(EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]
+        return [QualityFinding(ALL_EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]
     t_ns, (first, last) = _times_with_position(states, ego_option), _log_span_ns(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
     message = f"the ego {ego_option} is chosen with --ego: it is judged for the time of its track, {there}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.arrays import wrap_angles
-from drivelint.drive.order import LONGEST_PERIOD_NS, MAX_GAP_PERIODS, sorted_states
+from drivelint.drive.order import LONGEST_INTERPOLATED_PERIOD_NS, MAX_GAP_PERIODS, sorted_states
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import name_list
 
@@ -71,7 +71,7 @@ def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) 
     if first + n <= len(ego_steps_ns) and np.array_equal(t_ns, ego_steps_ns[first : first + n]):
         return None
     own_period = int(np.median(np.diff(t_ns)))
-    if own_period > LONGEST_PERIOD_NS:
+    if own_period > LONGEST_INTERPOLATED_PERIOD_NS:
         return None
     steps = ego_steps_ns[first : np.searchsorted(ego_steps_ns, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))

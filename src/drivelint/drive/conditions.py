@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import UsageError
 from drivelint.facts import toml_beside
 from drivelint.phrases import hint
-from drivelint.sql.words import vocabularies, words
+from drivelint.sql.words import vocabularies, words_of_vocabulary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-DRIVE_CONDITION_VALUES: Final = {name: words(name) for name in words("condition")}
+DRIVE_CONDITION_VALUES: Final = {name: words_of_vocabulary(name) for name in words_of_vocabulary("condition")}
 """Condition of a drive -> its words; includes `engaged`: whether the automated driver drives."""
 CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""

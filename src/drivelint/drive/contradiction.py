@@ -67,7 +67,7 @@ STRETCH_MISMATCH_SHARE: Final = 0.05
 delayed filter 0.8 m/s."""
 TOLERANCE_SIGMAS: Final = 4.0
 """The tolerance for a stretch includes this many standard deviations of the position noise."""
-SINGLE_STEP_SHARE: Final = 0.75
+LEAST_STEP_SHARE_IN_DIFFERENCE: Final = 0.75
 """If one step causes at least this share of the difference, the positions are wrong, not the velocity."""
 WHOLE_TRACK_SHARE: Final = 0.5
 """If more than this share of a track contradicts its velocities, the velocity is wrong as a whole, which `checks` reports."""
@@ -164,7 +164,7 @@ def _contradictory_positions(states: States, step: Steps) -> Mask:
         return wrong
 
     alone = is_contradiction(went, led, slack)
-    if not alone.any() and not _may_drift(went - led, step):
+    if not alone.any() and not _may_velocities_drift(went - led, step):
         return np.zeros(n, np.bool_)
     ends = np.ones(n + 1, np.bool_)  # at the end of a track, the one step beside the sample decides
     ends[1:-1] = alone | ~usable
@@ -174,11 +174,13 @@ def _contradictory_positions(states: States, step: Steps) -> Mask:
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _rows_half_second_around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
-    def sum_around(values: Floats) -> Floats:
+    def sum_half_second_around(values: Floats) -> Floats:
         sums = prefix_sums(values)
         return sums[..., last] - sums[..., first]
 
-    frozen: Mask = beside | is_contradiction(sum_around(went), sum_around(led), sum_around(slack))
+    frozen: Mask = beside | is_contradiction(
+        sum_half_second_around(went), sum_half_second_around(led), sum_half_second_around(slack)
+    )
     return frozen
 
 
@@ -198,7 +200,7 @@ def _differences_per_step_m(states: States, step: Steps, usable: Mask) -> tuple[
     return np.hypot(*went), slack
 
 
-def _may_drift(difference: Floats, step: Steps) -> bool:
+def _may_velocities_drift(difference: Floats, step: Steps) -> bool:
     """Return whether the velocities of any actor may deviate from its positions: a fast test of one sample per half second.
 
     `difference` (2, n - 1): the displacement of the positions minus that of the velocities, per step.
@@ -228,7 +230,7 @@ def _contradictory_velocities(states: States, step: Steps) -> Mask:
     fastest = np.hypot(*went)
     del went, led
     allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
-    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < SINGLE_STEP_SHARE * off * span)
+    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < LEAST_STEP_SHARE_IN_DIFFERENCE * off * span)
     if not wrong.any():
         return mismatched
     sigma = noise_of_samples_m(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)

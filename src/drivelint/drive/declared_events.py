@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 HEADLIGHTS: Final = "headlights"
 """The name of the event, and of the entry of `States.codes` whose values index `HEADLIGHT_STATES`."""
 HEADLIGHT_STATES: Final = ("off", "on")
-_EVENTS_FILE: Final = toml_beside(__file__, "declared_events.toml")
-ON_OFF_EVENTS: Final[dict[str, str]] = _EVENTS_FILE["on_off"]
+_TABLES_OF_EVENTS_FILE: Final = toml_beside(__file__, "declared_events.toml")
+ON_OFF_EVENTS: Final[dict[str, str]] = _TABLES_OF_EVENTS_FILE["on_off"]
 """Event that stays on until it is declared off -> its meaning."""
 EVENTS: Final[dict[str, dict[str, str]]] = {
     **{mode: {"value": "on, off", "says": says} for mode, says in ON_OFF_EVENTS.items()},
-    **_EVENTS_FILE["other"],
+    **_TABLES_OF_EVENTS_FILE["other"],
 }
 """Event -> its possible values (`value`) and meaning (`says`). Other events are kept, but no rule reads them."""
 

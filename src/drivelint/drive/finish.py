@@ -98,7 +98,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             *false_entry_findings(states, step),
             *repeated_end_findings(states, actors),
         ]
-    findings += _light_findings(states, egos)
+    findings += _unknown_ego_light_findings(states, egos)
     missed = [each for each in missed if each.ego_id in egos]
     states = absence.with_unknown_ego_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
@@ -128,7 +128,7 @@ def _split_at_jumps(
     """Split the tracks at jumps, except those of named egos; return the states, their steps, the split and findings."""
     step, split, findings = steps(states), jumps.NO_SPLIT, []
     if not is_motion_assumed:
-        states, gone = jumps.without_removed_actors(states, step, kept_ids=named_egos)
+        states, gone = jumps.cut_tracks_of_destroyed_actors(states, step, kept_ids=named_egos)
         step = steps(states) if gone else step
         split = jumps.split_tracks(states, step, kept_ids=named_egos)
         findings = [*gone, *split.findings]
@@ -232,7 +232,7 @@ def _rows_of_egos(states: States, egos: list[str]) -> Mask:
     return np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
 
 
-def _light_findings(states: States, egos: list[str]) -> list[QualityFinding]:
+def _unknown_ego_light_findings(states: States, egos: list[str]) -> list[QualityFinding]:
     is_ego = _rows_of_egos(states, egos)
     findings = []
     for column, light_name in (("indicator", "indicator"), ("brake_light", "brake light")):

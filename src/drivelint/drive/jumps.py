@@ -190,7 +190,7 @@ def _split_ids_by_piece(
     return alias
 
 
-def without_removed_actors(
+def cut_tracks_of_destroyed_actors(
     states: States, step: Steps, *, kept_ids: Collection[str]
 ) -> tuple[States, list[QualityFinding]]:
     """Leave out the states of actors that jump to a common position and stand there until their tracks end (states in order).

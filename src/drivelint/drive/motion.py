@@ -49,13 +49,13 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
         states.numbers.setdefault(name, np.full(n, np.nan))
     starts = np.flatnonzero(np.r_[True, ~step.same_actor])
     return [
-        *_replace_end_zeros(states, step, starts),
+        *_replace_zero_end_velocities(states, step, starts),
         *_replace_velocities(states, step, starts, most_replaced_share),
         *_drop_zero_accelerations(states, starts),
     ]
 
 
-def _replace_end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
+def _replace_zero_end_velocities(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
     """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: 0 stands for an unknown value."""
     n = len(states)
     if n < 3:
@@ -87,7 +87,7 @@ def _replace_velocities(
     numbers, v = states.numbers, states.velocity
     absent = np.logical_and.reduceat(np.isnan(v).all(axis=0), starts)
     still = ~absent & np.logical_and.reduceat((v == 0.0).all(axis=0), starts)
-    astray = ~absent & _actors_with_mismatch(states, step, most_replaced_share)[states.actor[starts]]
+    astray = ~absent & _actors_with_velocity_mismatch(states, step, most_replaced_share)[states.actor[starts]]
     biased = ~absent & _actors_with_biased_speed(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any() or biased.any()):
         return []
@@ -111,13 +111,13 @@ def _replace_velocities(
         velocity, filtered = states.velocity, rows.copy()
         velocity[:, rows], filtered[rows] = motion
         numbers["vx_mps"], numbers["vy_mps"] = velocity
-        findings += _filter_findings(states, filtered)
+        findings += _filtered_velocity_findings(states, filtered)
         text = why + " ({ids}): velocity is derived from positions"
         findings += states.findings(rows, "velocity_derived", "warning", text)
     return findings
 
 
-def _filter_findings(states: States, rows: Mask) -> list[QualityFinding]:
+def _filtered_velocity_findings(states: States, rows: Mask) -> list[QualityFinding]:
     """Return a finding for each actor whose velocities were filtered because its positions are noisy, with their accuracy."""
     text = (
         f"the positions of {{ids}} are noisy: the velocity is a mean over up to two seconds, known to "
@@ -129,11 +129,11 @@ def _filter_findings(states: States, rows: Mask) -> list[QualityFinding]:
     return found
 
 
-def _actors_with_mismatch(states: States, step: Steps, most_replaced_share: float) -> Mask:
+def _actors_with_velocity_mismatch(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Return the mask of actors whose velocities contradict their positions in most one-second windows with motion."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
-    if n <= k or most_replaced_share == 0.0 or not _may_mismatch(states, k):
+    if n <= k or most_replaced_share == 0.0 or not _may_velocities_mismatch(states, k):
         return wrong
     went, led, whole, span = motion_over_steps(states, step, steps_with_known_motion(states, step), k)
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
@@ -177,7 +177,7 @@ def _actors_with_biased_speed(states: States, step: Steps, most_replaced_share: 
     return biased & bool(ways[biased].sum() <= most_replaced_share * ways.sum())
 
 
-def _may_mismatch(states: States, stride: int) -> bool:
+def _may_velocities_mismatch(states: States, stride: int) -> bool:
     """Return whether the velocities of any actor may mismatch its positions: a fast test of every k-th state (Simpson's rule)."""
     first = np.arange(0, len(states) - stride, stride)
     middle, last = first + stride // 2, first + stride

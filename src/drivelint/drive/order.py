@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous."""
-LONGEST_PERIOD_NS: Final = 250_000_000
+LONGEST_INTERPOLATED_PERIOD_NS: Final = 250_000_000
 """Objects with a longer sampling period are not interpolated: at 250 ms, interpolating a braking car is already 8 cm off."""
 UNKNOWN_CODE = np.int8(-1)
 
@@ -122,8 +122,8 @@ def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int, track_p
 def _track_periods_ns(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Times:
     """Return for each sample the sampling period of its track, but not less than that of the log.
 
-    A track's period is the lower quartile of its steps, so holes do not lengthen it. If it is longer than `LONGEST_PERIOD_NS`, the
-    track is not interpolated either, and the log's period counts.
+    A track's period is the lower quartile of its steps, so holes do not lengthen it. If it is longer than `LONGEST_INTERPOLATED_PERIOD_NS`,
+    the track is not interpolated either, and the log's period counts.
     """
     starts = track_starts(actor)
     periods = np.full(len(starts), period_ns, np.int64)
@@ -131,7 +131,7 @@ def _track_periods_ns(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> 
         dt = np.diff(t_ns[first:end])
         if len(dt) and dt.max() > MAX_GAP_PERIODS * period_ns:
             own = int(np.partition(dt, (len(dt) - 1) // 4)[(len(dt) - 1) // 4])
-            periods[i] = max(own, period_ns) if own <= LONGEST_PERIOD_NS else period_ns
+            periods[i] = max(own, period_ns) if own <= LONGEST_INTERPOLATED_PERIOD_NS else period_ns
     return np.repeat(periods, np.diff(np.r_[starts, len(t_ns)]))
 
 

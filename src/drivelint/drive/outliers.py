@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 TYRE_LIMIT_MPS2: Final = 12.0
 """No vehicle changes its velocity faster than this and back again (see `ukhc.contact-signature`); an impact does not change it back."""
-MOST_STEP_VELOCITY_SHARE: Final = 0.25
+MOST_VELOCITY_CHANGE_SHARE: Final = 0.25
 """At a false step, the velocities before and after it differ by at most this share of the velocity change that the step seems to have."""
 LEAST_JOLTED_ACTORS: Final = 4
 """If at least this many moving actors change speed by the same share at one moment, the log's times or positions are wrong."""
@@ -43,7 +43,7 @@ LEAST_JOLTED_MPS: Final = 1.0
 """For slower actors, relative changes of speed are noise."""
 OUTLIER_SIGMAS: Final = 6.0
 """A sample is an outlier only if it is off by this many standard deviations of the position noise."""
-LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
+LEAST_FALSE_STEP_BOUNDS_M: Final = (0.05, 0.25)
 """With derived velocities, a step counts if it is longer than 24 m/s2 dt2, clipped to these bounds (m): shorter steps cause no jolt of
 12 m/s2."""
 LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
@@ -153,7 +153,7 @@ def _samples_at_false_steps(
     # the velocity must be nearly the same before and after: an impact would change it
     goes_on &= (
         np.hypot(*(after - before))
-        <= MOST_STEP_VELOCITY_SHARE * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
+        <= MOST_VELOCITY_CHANGE_SHARE * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
     )
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     outliers[rows] = outliers[rows + 1] = True
@@ -167,7 +167,7 @@ def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Float
 
 
 def _least_false_step_m(dt_s: Floats) -> Floats:
-    least: Floats = np.clip(2.0 * TYRE_LIMIT_MPS2 * dt_s**2, *LEAST_STEP_DERIVED_VELOCITY_M)
+    least: Floats = np.clip(2.0 * TYRE_LIMIT_MPS2 * dt_s**2, *LEAST_FALSE_STEP_BOUNDS_M)
     return least
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from drivelint.drive import conditions
 from drivelint.phrases import name_list
-from drivelint.sql.words import Quantity, words
+from drivelint.sql.words import Quantity, words_of_vocabulary
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,14 +26,14 @@ STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", 
 """The columns of `actor_state` with real numbers, in the order of that table."""
 SIZE_COLUMNS = ("length_m", "width_m", "height_m")
 """The columns of `actor` with real numbers, in the order of that table."""
-INDICATORS = words("indicator")
-BRAKE_LIGHTS = words("brake_light")
-ACTOR_CLASSES = words("actor_class")
+INDICATORS = words_of_vocabulary("indicator")
+BRAKE_LIGHTS = words_of_vocabulary("brake_light")
+ACTOR_CLASSES = words_of_vocabulary("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """The classes of the actors that `--ego all` judges: vehicles with an engine and a driver."""
 EARLIEST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC. Later times count from 1970 in UTC, smaller times from the start of the recording."""
-SIGNAL_STATES = words("light_state")
+SIGNAL_STATES = words_of_vocabulary("light_state")
 
 
 @dataclass(frozen=True)
@@ -201,15 +201,18 @@ class QualityFinding:
         return cls(check_id, severity, message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
 
 
-def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
-    """Return the log's only OpenDRIVE map, or None with a finding if there are several. `maps`: map text -> topic that first had it."""
-    if len(maps) > 1:
+def single_map(topic_by_map: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
+    """Return the log's only OpenDRIVE map, or None with a finding if there are several.
+
+    `topic_by_map`: map text -> the topic that first had it.
+    """
+    if len(topic_by_map) > 1:
         message = (
-            f"the log has {len(maps)} different OpenDRIVE maps (topics {name_list(sorted(maps.values()))}), and "
+            f"the log has {len(topic_by_map)} different OpenDRIVE maps (topics {name_list(sorted(topic_by_map.values()))}), and "
             "none is used: keep only one in the log"
         )
         return None, (QualityFinding.unusable_map(message),)
-    return next(iter(maps), None), ()
+    return next(iter(topic_by_map), None), ()
 
 
 @dataclass

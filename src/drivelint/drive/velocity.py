@@ -27,7 +27,7 @@ HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter in seconds, tried in this order if central differences are too noisy.
 
 At a jerk of 10 m/s3, the derived velocities are wrong by up to 0.06, 0.25 and 1 m/s."""
-LONGEST_PERIOD_NS: Final = 210_000_000
+LONGEST_FILTERED_PERIOD_NS: Final = 210_000_000
 """With longer sampling periods, motion cannot be separated from noise: central differences are used, as for exact positions."""
 LEAST_MOVEMENT_M: Final = 1.0
 """An actor moves if its positions spread by more than this; the noise of a parked car's positions stays below it."""
@@ -47,7 +47,7 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
     v = time_derivative(place, step)
     filtered = np.zeros(len(t_ns), np.bool_)
     placed = np.flatnonzero(np.isfinite(place).all(axis=0))
-    if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
+    if not 0 < step.period_ns <= LONGEST_FILTERED_PERIOD_NS or not len(placed):
         return DerivedVelocity(v, filtered)
     # a filter does not need a sample at every step: it continues over a single sample without a position
     of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.track_period_ns[placed])
@@ -58,13 +58,13 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
 
 
 def _filtered_velocities(
-    t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central: Floats
+    t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central_velocities: Floats
 ) -> DerivedVelocity:
-    """Return the velocities (2, n) of samples that all have a position; `central`: the velocities by central differences."""
+    """Return the velocities (2, n) of samples that all have a position; `central_velocities`: the velocities by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
     sigma = noise_of_samples_m(place, runs, actor, default_m=0.0)
     has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.track_period_ns * 1e-9) <= LARGEST_ERROR_MPS
-    v, filtered = np.where(has_velocity, central, np.nan), np.zeros(len(t_ns), np.bool_)
+    v, filtered = np.where(has_velocity, central_velocities, np.nan), np.zeros(len(t_ns), np.bool_)
     for width in HALF_WIDTHS_S:
         if has_velocity.all():
             break

@@ -113,7 +113,7 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
 _pending_reads: WeakSet[Future[Trace]] = WeakSet()
 
 
-def logs_being_read() -> bool:
+def are_logs_being_read() -> bool:
     """Return whether logs are being read in other threads."""
     return any(not future.done() for future in list(_pending_reads))
 

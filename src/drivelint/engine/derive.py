@@ -13,7 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
-from drivelint.sql.derivations import ALWAYS_NEEDED, needed_derivations
+from drivelint.sql.derivations import NEEDED_OF_RULES_ABOUT_OTHERS, needed_derivations
 from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.sql.derivations import Derivation
 
 WORKERS: Final = 2
-MOST_STATES_TO_ASK_FIRST: Final = 100_000
+MOST_STATES_FOR_EMPTINESS_TEST: Final = 100_000
 """Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is then
 faster than planning the whole statement."""
 LEAST_STATES_FOR_ONE_WORKER: Final = 1_000_000
@@ -34,7 +34,7 @@ def derive(
     tables: Iterable[str],
     *,
     are_map_tables: bool,
-    always_needed_tables: Iterable[str] = ALWAYS_NEEDED,
+    always_needed_tables: Iterable[str] = NEEDED_OF_RULES_ABOUT_OTHERS,
     filled_tables: Collection[str] = (),
 ) -> None:
     """Fill the library tables that `tables` depend on.
@@ -48,12 +48,12 @@ def derive(
     todo = {
         step.table: step
         for step in needed_derivations(tables, always_needed_tables)
-        if step.of_the_map is are_map_tables and step.table not in filled_tables
+        if step.is_of_map_only is are_map_tables and step.table not in filled_tables
     }
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
-    if n_states > MOST_STATES_TO_ASK_FIRST:
+    if n_states > MOST_STATES_FOR_EMPTINESS_TEST:
         todo = {table: replace(step, occasion="") for table, step in todo.items()}
     empty = store.tables_without_rows(con) - todo.keys()
     for table in statement_texts("map_shapes").keys() - empty if are_map_tables else ():

@@ -23,10 +23,10 @@ LEAST_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions for checking whether a drive is on its map
 LEAST_REVERSED_EACH_WAY: Final = 5
 """A road counts as reversed if at least this many steps are against the lane in each direction: overtaking explains only one direction."""
-SAMPLED_BESIDE_LANE_M: Final = (
+FARTHEST_NEIGHBOUR_LANE_M: Final = (
     8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
 )
-LEAST_FACING_COSINE: Final = 0.9
+LEAST_OPPOSITE_LANE_COSINE: Final = 0.9
 LEAST_AGREEING_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
 
 
@@ -77,18 +77,18 @@ def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floa
     return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading_of_lines(lanes.lines[lane], points[state])) > 0, lane)
 
 
-def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
+def vote_handedness(lanes_handedness: str, headings: LaneHeadings) -> str | None:
     """Return the driving side (lht, rht) that the headings show; None: there are too few, or they disagree.
 
-    `handedness`: the side for which the lanes' directions were made.
+    `lanes_handedness`: the side for which the lanes' directions were made.
     """
     if len(headings.agree) < LEAST_VOTES:
         return None
     agree = float(np.mean(headings.agree))
     if agree >= LEAST_AGREEING_SHARE:
-        return handedness
+        return lanes_handedness
     if agree <= 1 - LEAST_AGREEING_SHARE:
-        return opposite_side(handedness)
+        return opposite_side(lanes_handedness)
     return None
 
 
@@ -111,8 +111,8 @@ def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
     heading, back = (
         _heading_of_lines(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((one, 0), (other, -1))
     )
-    facing = np.cos(heading - back) < -LEAST_FACING_COSINE
-    found = facing & (shapely.length(near) < SAMPLED_BESIDE_LANE_M)
+    facing = np.cos(heading - back) < -LEAST_OPPOSITE_LANE_COSINE
+    found = facing & (shapely.length(near) < FARTHEST_NEIGHBOUR_LANE_M)
     return min((str(lanes.road[k]) for k in one[found]), default=None)
 
 

@@ -44,9 +44,9 @@ class MemoryLimit:
         self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
         """The most pairs of a part of a drive: see `batch.egos_to_skip_by_part`."""
 
-    def halve_parts(self, pairs: int) -> None:
+    def halve_parts(self, n_pairs: int) -> None:
         """Limit parts to half the pairs of the part that ran out of memory."""
-        self.pairs_per_part = max(1, pairs // 2)
+        self.pairs_per_part = max(1, n_pairs // 2)
 
     def raise_to_machine_limit(self) -> bool:
         """Raise the database's memory limit to what the machine allows; return False if it was raised before."""
@@ -76,7 +76,7 @@ class MemoryLimit:
         because the database counts the memory of its tables, but not that of functions on huge values.
         """
         free = free_bytes()
-        if free is None or batch.logs_being_read():
+        if free is None or batch.are_logs_being_read():
             return None
         return min(2 * self._limit, free) if self.limited and self._limit is not None else int(0.8 * free)
 

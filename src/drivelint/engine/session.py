@@ -23,9 +23,9 @@ from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
 from drivelint.sql.derivations import (
-    ALWAYS_NEEDED,
     NEEDED_OF_DRIVES,
     NEEDED_OF_RULES,
+    NEEDED_OF_RULES_ABOUT_OTHERS,
     derived_tables,
     needed_derivations,
 )
@@ -82,7 +82,9 @@ class JudgingSession:
         self._tables = {table for rule in rules for table in rule.reads}
         self._also: tuple[str, ...] = NEEDED_OF_DRIVES
         if rules:
-            self._also = ALWAYS_NEEDED if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
+            self._also = (
+                NEEDED_OF_RULES_ABOUT_OTHERS if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
+            )
         self._memory = memory or MemoryLimit(con, None)
         self._interruption = interruption or Interruption()
         self._limits = limits or RuleLimits()
@@ -97,7 +99,7 @@ class JudgingSession:
                 errors=errors,
                 memory=self._memory,
                 load=self._load_drives,
-                forget=self._delete_copies,
+                forget=self._delete_except_in_kept_database,
                 limits=self._limits_of_copies,
                 is_stopped=self._interruption.forbids_new_copies,
                 of_all=copies_of_all,
@@ -166,9 +168,9 @@ class JudgingSession:
             store.recreate_empty(self._con, self._tables_to_fill("drive", "part"))
 
     @property
-    def n_waiting(self) -> int:
+    def n_waiting_drives(self) -> int:
         """The number of drives whose copies are not judged yet."""
-        return self._robustness.n_waiting if self._robustness else 0
+        return self._robustness.n_waiting_drives if self._robustness else 0
 
     def n_findings_to_copy(self) -> int:
         """Return the number of findings for which copies are judged first."""
@@ -215,7 +217,7 @@ class JudgingSession:
                     return False
                 # the kept database contains every ego, so `deferred_ego` is not copied
                 self._append_to_kept_database(
-                    (t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0
+                    (t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), has_shared_rows=no > 0
                 )
             self._append_to_kept_database(store.tables_of_lifetime("drive"))
             undo.pop_all()
@@ -288,12 +290,12 @@ class JudgingSession:
         self._con.execute("RESET GLOBAL checkpoint_threshold")  # else the WAL would grow as large as the database
         self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
-    def _append_to_kept_database(self, tables: Iterable[str], *, again: bool = False) -> None:
-        """Append tables to the kept database; `again`: it already contains the rows that all parts of a drive have in common."""
+    def _append_to_kept_database(self, tables: Iterable[str], *, has_shared_rows: bool = False) -> None:
+        """Append tables to the kept database; `has_shared_rows`: it already contains the rows that all parts of a drive have in common."""
         if not self._kept:
             return
         for table in tables:
-            whole = again and ("ego_id" not in store.column_comments()[table] or table == "ego_clock")
+            whole = has_shared_rows and ("ego_id" not in store.column_comments()[table] or table == "ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
             self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
@@ -307,11 +309,11 @@ class JudgingSession:
             self._kept_maps.update(new)
 
     def _delete_drives(self, ids: Sequence[str]) -> None:
-        self._delete_copies(ids)
+        self._delete_except_in_kept_database(ids)
         for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # some parts may have been copied
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
-    def _delete_copies(self, ids: Sequence[str]) -> None:
+    def _delete_except_in_kept_database(self, ids: Sequence[str]) -> None:
         """Delete the rows of these drives from the database, but not from the kept database, which never contains copies."""
         store.recreate_empty(self._con, self._tables_to_fill("drive", "part"))
         for table in store.tables_of_lifetime("run"):

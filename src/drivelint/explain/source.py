@@ -101,7 +101,7 @@ def with_ego(drive: Drive, ego_id: str) -> Drive:
 
 
 def _drive_from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
-    with store.open_as_is(file, read_only=True) as con:
+    with store.open_without_creating_tables(file, read_only=True) as con:
         tables = {name: _rows_with_key(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: does not contain the drive {drive_id}: check the drives again")

@@ -11,10 +11,10 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from drivelint.drive.trace import Identity
+from drivelint.drivelint_files import DrivelintFiles
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.search import folder_tree, is_pipe_or_device, why_unreadable
-from drivelint.own_files import OwnFiles
 from drivelint.phrases import escape_invisible
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _traces_in_path(path: Path) -> list[Path]:
         return [path]
     content = folder_tree(path, _SEARCHED_SUFFIXES)
     drives = drive_folders([*content.folders, *content.links])
-    inside, own = frozenset(drives), OwnFiles(path)
+    inside, own = frozenset(drives), DrivelintFiles(path)
     files = [
         file
         for file in content.files

@@ -149,7 +149,7 @@ def template_values(case: Case) -> dict[str, Any]:
             "after": number_or_dash((span[1] - finding.moment_ns) / 1e9, 1),
         },
         "recording": _recording_time_texts(finding),
-        "errors": MeasurementErrors().words,
+        "errors": MeasurementErrors().standard_deviations_text,
         "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
         "sure": _certainty_values(case),
         "rests": _sudden_contact_sentence(case, motion),

@@ -13,7 +13,7 @@ from drivelint import __version__, catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
 from drivelint.incident import possible_sheet_ids
-from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
+from drivelint.pack import finding_rows, finding_sql, reproduction, sheets, signature
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.contents import (
     COPIED_RESULT_FILES,
@@ -103,13 +103,15 @@ def _altered_files(folder: Path) -> list[Problem]:
 def read_evidence(folder: Path) -> dict[str, Any]:
     """Return the content of `evidence.json`. Errors: `ValueError` if a key occurs twice, or for another version of the format."""
 
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    def dict_of_distinct_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
             raise ValueError(f"{EVIDENCE_FILE} says something twice")
         return found
 
-    told: dict[str, Any] = json.loads((folder / EVIDENCE_FILE).read_text("utf-8"), object_pairs_hook=once)
+    told: dict[str, Any] = json.loads(
+        (folder / EVIDENCE_FILE).read_text("utf-8"), object_pairs_hook=dict_of_distinct_keys
+    )
     if told["evidence"] != FORMAT_VERSION:
         raise ValueError(f"{EVIDENCE_FILE} is of form {told['evidence']}, this drivelint reads {FORMAT_VERSION}")
     return told
@@ -217,7 +219,7 @@ def check_sql_of_findings(folder: Path, result: Result, check_request: RunReques
     right.
     """
     try:
-        rules = {rule.id: rule for rule in again.rules_of_result(result, check_request)}
+        rules = {rule.id: rule for rule in reproduction.rules_of_result(result, check_request)}
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
     if why := rules_contradiction(list(rules.values()), result.rules, check_request):
@@ -244,7 +246,7 @@ def check_sql_in_folders(
     check_request: RunRequest,
 ) -> tuple[list[Problem], int]:
     """Return the findings whose SQL returns other numbers, and how many findings were run, one per event."""
-    params = again.param_values_by_rule(rules.values(), check_request)
+    params = reproduction.param_values_by_rule(rules.values(), check_request)
     wrong, run = [], []
     for inner, row in findings_by_folder.items():
         place = folder / inner

@@ -21,8 +21,8 @@ from drivelint.result.names import MANIFEST, RESULT_FILE_GLOBS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.pack.again import Evidence
     from drivelint.pack.finding_sql import Row
+    from drivelint.pack.reproduction import Evidence
     from drivelint.result.model import Result
     from drivelint.result.request import RunRequest
 

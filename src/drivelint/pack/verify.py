@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint import __version__
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.pack import again, audits, bag, consistency, sheets, signature, timestamp
+from drivelint.pack import audits, bag, consistency, reproduction, sheets, signature, timestamp
 from drivelint.pack.bag import Problem
 from drivelint.pack.contents import RESULT_FOLDER, library_versions, path_inside_pack
 from drivelint.pack.inputs import judged_drives, request_with_present_paths
@@ -219,14 +219,14 @@ def _judge_result_again(folder: Path, stated: PackContent, check_request: RunReq
     other_libraries = stated.evidence["packed_with"] != library_versions()
     try:
         with TemporaryDirectory(prefix="drivelint-") as work:
-            fresh = again.check_again(result, check_request, Path(work) if margins else None)
+            fresh = reproduction.check_again(result, check_request, Path(work) if margins else None)
             files = {
                 f"{RESULT_FOLDER}/{name}.parquet": parquet_bytes(_table_of_judged_drives(fresh, name), table)
                 for name, table in TABLE_OF_FILE.items()
             }
             if fresh.margins_file is not None:
                 files[f"{RESULT_FOLDER}/margins.parquet"] = fresh.margins_file.read_bytes()
-        for name, contents in again.evidence_of_findings(result, check_request).items():
+        for name, contents in reproduction.evidence_of_findings(result, check_request).items():
             if isinstance(contents, dict):
                 files |= {f"data/findings/{name}/{file}": content for file, content in contents.items()}
         if not other_libraries:
@@ -238,7 +238,7 @@ def _judge_result_again(folder: Path, stated: PackContent, check_request: RunReq
         f"{RESULT_FOLDER}/{name}.parquet": parquet_bytes(_table_of_judged_drives(result, name), table)
         for name, table in ({} if whole else TABLE_OF_FILE).items()
     }
-    wrong, other_bytes = again.file_differences(folder, files, packed, other_libraries=other_libraries)
+    wrong, other_bytes = reproduction.file_differences(folder, files, packed, other_libraries=other_libraries)
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()
     }

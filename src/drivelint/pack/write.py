@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint import __version__
 from drivelint.audit.bucket import url_of_path
 from drivelint.errors import UsageError
-from drivelint.pack import again, audits, bag, contents, sheets, signature, timestamp
+from drivelint.pack import audits, bag, contents, reproduction, sheets, signature, timestamp
 from drivelint.pack.contents import EVIDENCE_FILE, RESULT_FOLDER, packed_summary
 from drivelint.pack.copying import copy_into_new_folder, copy_rule_files, copy_rules_dirs, write_files
 from drivelint.pack.inputs import request_with_present_paths
@@ -38,7 +38,7 @@ class _PackSource(NamedTuple):
     result: Result
     check_request: RunRequest
     rules: list[Rule]
-    evidence: again.Evidence
+    evidence: reproduction.Evidence
     incidents: dict[str, bytes]
 
 
@@ -115,7 +115,10 @@ def _functions_for_check_result(request: PackRequest) -> PackContentFunctions:
             f"{request.folder}: its logs have options of their own, by a manifest: audit that, and pack the audit"
         )
     check_request = request_with_present_paths(check_request, result.drives.to_pylist(), request.traces, request.map)
-    rules, evidence = again.rules_of_result(result, check_request), again.evidence_of_findings(result, check_request)
+    rules, evidence = (
+        reproduction.rules_of_result(result, check_request),
+        reproduction.evidence_of_findings(result, check_request),
+    )
     checked_result = _PackSource(
         result, check_request, rules, evidence, sheets.sheets_of_result(request.folder, result, check_request)
     )

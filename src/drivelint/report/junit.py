@@ -16,12 +16,12 @@ from drivelint.result import counts
 from drivelint.result.model import (
     ego_absence_texts,
     failures_without_finding,
-    gating_gone_findings,
+    gating_unfixed_findings,
     gating_unknowns,
     off_map_reason,
     why_too_little_decided,
 )
-from drivelint.result.text import line_of_row, rule_name, with_count
+from drivelint.result.text import rule_name, verdict_or_finding_line, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -67,7 +67,7 @@ def render(result: Result) -> bytes:
     ]
     if too_little := why_too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
-    if gone := gating_gone_findings(result):
+    if gone := gating_unfixed_findings(result):
         suites.append(("baseline", list(map(_unfixed_case, gone))))
     for name, mine in suites:
         counted = _append_suite(root, name, mine)
@@ -129,7 +129,7 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
         if row["verdict"] in of_verdict:
             getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
     for row in result.findings.to_pylist():
-        add_failure(row, line_of_row(row, when(row, rules, starts.get(row["drive_id"]))))
+        add_failure(row, verdict_or_finding_line(row, when(row, rules, starts.get(row["drive_id"]))))
     for row in _distinct_reasons(failures_without_finding(result)):
         add_failure(row, with_count(row["reason"], row["count_all"]))
     required = set(_case_keys(gating_unknowns(result)))

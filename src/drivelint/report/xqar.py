@@ -18,7 +18,7 @@ from drivelint.gate import descriptions
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
-from drivelint.result.text import line_of_row, subject, with_count
+from drivelint.result.text import subject, verdict_or_finding_line, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -116,7 +116,7 @@ def _write_finding(checker: etree._Element, row: Row, rule: Row, start_ns: int |
     stable = rule["status"] == "stable"
     profile = "" if row["profile"] is None else f"profile {row['profile']}: "
     moment = when(row, {rule["rule_id"]: rule}, start_ns)
-    text = profile + line_of_row(row, moment)
+    text = profile + verdict_or_finding_line(row, moment)
     notes = [] if stable else [f"{rule['status']}, does not gate"]
     notes += [descriptions.waiver_reason_phrase(waiver)] if waiver else []
     notes += ["known: the baseline contains it"] if gate and gate.is_in_baseline(row["finding_id"]) else []

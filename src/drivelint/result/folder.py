@@ -14,11 +14,11 @@ from contextlib import contextmanager, suppress
 from hashlib import file_digest, sha256
 from typing import TYPE_CHECKING, Final
 
+from drivelint.drivelint_files import MANIFEST_FILES_KEY, written_files
 from drivelint.errors import UsageError
-from drivelint.own_files import MANIFEST_KEY, written_files
 from drivelint.phrases import name_list
 from drivelint.result.names import MANIFEST
-from drivelint.result.publishing import OutputError, prepare_folder, publish
+from drivelint.result.publishing import OutputError, ensure_writable_folder, publish
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -40,7 +40,7 @@ def working_folder(
     which a build server shows; `mark_file`: as in `replace_result`. Errors: `UsageError` if `out` is a file, or, without `overwrite`, has
     files that match `patterns` but were not written by drivelint; `OutputError`.
     """
-    prepare_folder(out)
+    ensure_writable_folder(out)
     present = _matching_files(out, patterns)
     foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
@@ -58,21 +58,23 @@ def working_folder(
         )
         try:
             work.mkdir()
-            _remove_files(out, sorted(_result_files(out, patterns, overwrite=overwrite).intersection(report_names)))
+            _remove_files(
+                out, sorted(_replaceable_files(out, patterns, overwrite=overwrite).intersection(report_names))
+            )
             yield work
             is_done = True
         finally:
             shutil.rmtree(work, ignore_errors=True)
             if not is_done and before is not None and _inode_and_mtime_ns(out / mark_file) == before:
-                _move_to_earlier_folder(out, patterns, mark_file, overwrite=overwrite)
+                _move_earlier_result_aside(out, patterns, mark_file, overwrite=overwrite)
 
 
-def _move_to_earlier_folder(out: Path, patterns: Sequence[str], mark_file: str, *, overwrite: bool) -> None:
+def _move_earlier_result_aside(out: Path, patterns: Sequence[str], mark_file: str, *, overwrite: bool) -> None:
     """Move an earlier result into the subfolder `EARLIER_FOLDER`. The mark moves first: without it, `out` has no result."""
     earlier = out / EARLIER_FOLDER
     with suppress(OutputError):  # files that remain are replaced below; this error must not hide why the run ended
-        _remove_files(earlier, sorted(_result_files(earlier, patterns, overwrite=False)))
-    names = _result_files(out, patterns, overwrite=overwrite)
+        _remove_files(earlier, sorted(_replaceable_files(earlier, patterns, overwrite=False)))
+    names = _replaceable_files(out, patterns, overwrite=overwrite)
     try:
         for name in (mark_file, *sorted(names - {mark_file}), MANIFEST):
             if (out / name).exists():
@@ -152,7 +154,7 @@ def replace_result(
     Errors: `OutputError`.
     """
     names = {*contents, *finished_files}
-    before = _result_files(out, patterns, overwrite=overwrite)
+    before = _replaceable_files(out, patterns, overwrite=overwrite)
     # if the machine fails halfway, the list has both the old and the new files for the next run
     publish(out, {MANIFEST: manifest_bytes(before | names)}, {})
     unused_files: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
@@ -163,7 +165,10 @@ def replace_result(
     earlier = out / EARLIER_FOLDER
     _remove_files(
         earlier,
-        [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
+        [
+            *sorted(_replaceable_files(earlier, patterns, overwrite=False)),
+            *([MANIFEST] if written_files(earlier) else []),
+        ],
     )
     with suppress(OSError):  # another program's file is in the folder, or the folder does not exist
         earlier.rmdir()
@@ -204,7 +209,7 @@ def _matching_files(out: Path, patterns: Sequence[str]) -> set[str]:
     return {path.relative_to(out).as_posix() for pattern in patterns for path in out.glob(pattern)}
 
 
-def _result_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
+def _replaceable_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
     """Return the files of an earlier result, except `files.json`: the listed files, or with `overwrite` all that match `patterns`."""
     present = _matching_files(out, patterns) - {MANIFEST}
     return present if overwrite else present & written_files(out)
@@ -227,5 +232,5 @@ def hashes_in(content: bytes) -> dict[str, str]:
 
 def manifest_bytes(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
     """Return the content of `files.json` for the files of these names."""
-    said = {MANIFEST_KEY: sorted(names), **({_HASHES_KEY: hashes} if hashes else {})}
+    said = {MANIFEST_FILES_KEY: sorted(names), **({_HASHES_KEY: hashes} if hashes else {})}
     return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()

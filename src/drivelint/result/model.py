@@ -148,8 +148,8 @@ def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
-    if gone := gating_gone_findings(result):
-        yield ExitStatus(ExitCode.NOT_JUDGED, _gone_findings_sentence(result, gone))
+    if gone := gating_unfixed_findings(result):
+        yield ExitStatus(ExitCode.NOT_JUDGED, _unfixed_findings_sentence(result, gone))
     if (unknown := gating_unknowns(result)).num_rows:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_verdicts_sentence(result, unknown))
     if result.ended_early is not None:
@@ -197,7 +197,7 @@ def gating_findings(result: Result) -> pa.Table:
     return rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
 
 
-def gating_gone_findings(result: Result) -> list[ComparedFinding]:
+def gating_unfixed_findings(result: Result) -> list[ComparedFinding]:
     """Return the baseline's findings that cause exit code 4: of stable rules, severe enough, absent from the run but not fixed."""
     before = None if result.gate is None else result.gate.baseline
     gone = [] if before is None else before.unfixed_findings()
@@ -336,7 +336,7 @@ def _let_through_words(result: Result) -> str:
     return f" (of that severity {', '.join(through)})" if through else ""
 
 
-def _gone_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
+def _unfixed_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return in words how many of the baseline's severe findings are absent but not fixed, and why."""
     by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED_WORDS}
     why = [f"{n_findings(mine)} {NOT_FIXED_WORDS[status]}" for status, mine in by_status.items() if mine]

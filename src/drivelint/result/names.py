@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint import own_files
+from drivelint import drivelint_files
 
-MANIFEST: Final = own_files.MANIFEST
+MANIFEST: Final = drivelint_files.MANIFEST
 RUN_FILE: Final = "run.json"
 GATE_FILE: Final = "gate.json"
 MARK_FILE: Final = "summary.json"

@@ -19,7 +19,7 @@ class OutputError(DriveLintError):
     exit_code = ExitCode.TEMPFAIL
 
 
-def prepare_folder(out: Path) -> None:
+def ensure_writable_folder(out: Path) -> None:
     """Create the folder for results and check that files can be written there, before a long run begins.
 
     Errors: `UsageError` if `out` is a file; `OutputError`.

@@ -103,7 +103,7 @@ def tolerance(row: Row, rule: Row) -> float | None:
     return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
 
 
-def line_of_row(row: Row, when: str) -> str:
+def verdict_or_finding_line(row: Row, when: str) -> str:
     """Return a verdict or finding as one line: `when`, ego and object, measured values, reason, and `doubt_words`.
 
     The measured values are omitted if the reason contains them.

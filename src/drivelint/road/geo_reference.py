@@ -117,7 +117,7 @@ def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.f
         "SELECT ST_X(p) AS x, ST_Y(p) AS y "
         "FROM (SELECT ST_Transform(ST_Point(x, y), $source, $target, always_xy := true) AS p FROM places)"
     )
-    with store.open_as_is() as con:
+    with store.open_without_creating_tables() as con:
         store.lock_down(con)  # a reference may contain the names of grid files
         con.register("places", pa.table({"x": xy[:, 0], "y": xy[:, 1]}))
         found = con.execute(sql, {"source": source, "target": target}).fetchnumpy()

@@ -35,7 +35,7 @@ NEEDED_OF_DRIVES: Final = (
 """The derived tables that the table `drive` and the command `inspect` read, independently of rules."""
 NEEDED_OF_RULES: Final = (*NEEDED_OF_DRIVES, "pair")
 """The derived tables that the evaluation and the evidence of findings always read, for any rules."""
-ALWAYS_NEEDED: Final = (*NEEDED_OF_RULES, "lost_object")
+NEEDED_OF_RULES_ABOUT_OTHERS: Final = (*NEEDED_OF_RULES, "lost_object")
 """The derived tables that the evaluation reads for rules about other actors than the ego."""
 
 
@@ -54,7 +54,7 @@ class Derivation:
     """A query over the CTEs that a line `-- occasion: a, b` names, or ''. If the query has no rows, the table has none."""
 
     @property
-    def of_the_map(self) -> bool:
+    def is_of_map_only(self) -> bool:
         """Whether the table depends only on the map, and is filled once per map."""
         return lifetimes()[self.table] == "map"
 
@@ -135,6 +135,8 @@ def _table_with_sources(table: str) -> frozenset[str]:
     return frozenset({table}).union(*map(_table_with_sources, reads))
 
 
-def needed_derivations(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
-    """Return the derivations that fill these tables and the tables `also`, with all tables that they read, in order."""
-    return _derivations_with_sources([*tables, *also])
+def needed_derivations(
+    tables: Iterable[str], further_tables: Iterable[str] = NEEDED_OF_RULES_ABOUT_OTHERS
+) -> list[Derivation]:
+    """Return the derivations that fill these tables and `further_tables`, with all tables that they read, in order."""
+    return _derivations_with_sources([*tables, *further_tables])

@@ -52,7 +52,7 @@ def connect(
     the working folder. Column comments are created only in a database file: this takes longer than creating the tables, and in memory
     nothing reads them. Errors: `DriveLintError` if the pinned extension cannot be loaded.
     """
-    con = open_as_is(path)
+    con = open_without_creating_tables(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # GLOBAL: also for cursors of the connection
     progress_bar.turn_off(con)
@@ -194,7 +194,7 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
         return
 
 
-def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
+def open_without_creating_tables(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
     """Open a database without creating tables, with the spatial extension from its wheel. `path` None: an empty database in memory.
 
     The signature of the extension is not verified: that would hash its 80 MB each time, and the file was installed together with duckdb,

@@ -24,7 +24,7 @@ _NO_NAMES: Final[frozenset[str]] = frozenset()
 _CALL: Final = re.compile(r"(\w+)\"?\(")
 _MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
-_TABLE_WITHOUT_ROWS: Final = "ctes without rows"
+_NAME_FOR_CTES_WITHOUT_ROWS: Final = "ctes without rows"
 _INNER_NODE_TYPES: Final = (dict, list)
 """The types of a tree's inner nodes. Nine tenths of a tree are single values, which `walk` skips."""
 
@@ -86,8 +86,8 @@ def has_no_rows_without(tree: Node, ctes: Names) -> bool:
     tree = deepcopy(tree)
     for node, in_sight in walk(tree):
         if node.get("type") == "BASE_TABLE" and _lower_case(node["table_name"]) in ctes and _is_cte(node, in_sight):
-            node["table_name"] = _TABLE_WITHOUT_ROWS  # one table name replaces all of these CTEs
-    return _TABLE_WITHOUT_ROWS in _needed_by_query(tree, {}, lateral=False)
+            node["table_name"] = _NAME_FOR_CTES_WITHOUT_ROWS  # one table name replaces all of these CTEs
+    return _NAME_FOR_CTES_WITHOUT_ROWS in _needed_by_query(tree, {}, lateral=False)
 
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:

@@ -96,7 +96,7 @@ def vocabularies() -> dict[str, Vocabulary]:
     return {name: Vocabulary(name, **about | {"words": tuple(about["words"])}) for name, about in facts.items()}
 
 
-def words(name: str) -> tuple[str, ...]:
+def words_of_vocabulary(name: str) -> tuple[str, ...]:
     """Return the words of a vocabulary. Errors: `KeyError` for a name without a vocabulary."""
     return vocabularies()[name].words
 

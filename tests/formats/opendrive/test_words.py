@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivelint.sql.words import words
+from drivelint.sql.words import words_of_vocabulary
 from tests.formats.opendrive.signal_text import WIDTH
 from tests.formats.opendrive.xodr import lane, lanelets, load, road, rows, section
 
@@ -33,8 +33,8 @@ def test_every_lane_type_of_the_standard_is_a_word(kind: str) -> None:
 
 
 def test_the_lane_types_are_those_of_the_standard_and_two_more() -> None:
-    assert set(words("lane_type")) - set(LANE_TYPES) == {"carpool", "unknown"}
-    assert set(LANE_TYPES) <= set(words("lane_type"))
+    assert set(words_of_vocabulary("lane_type")) - set(LANE_TYPES) == {"carpool", "unknown"}
+    assert set(LANE_TYPES) <= set(words_of_vocabulary("lane_type"))
 
 
 def test_a_lane_of_a_type_that_is_not_known_is_named_and_not_driven_on() -> None:

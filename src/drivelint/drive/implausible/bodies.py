@@ -40,17 +40,18 @@ PAIRS_PER_PART: Final = 1_000_000
 """The approximate number of pairs of boxes in memory at once."""
 MOST_FALSE_ENTRY_SAMPLES: Final = 3
 """A track with a false start reaches its true position within this many samples."""
-FALSE_ENTRY_LEAST_MPS: Final = 5.0
+FALSE_ENTRY_LEAST_CHANGE_MPS: Final = 5.0
 """If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
 
 COUPLED_GAP_M: Final = 2.0
 COUPLED_ASIDE_M: Final = 1.0
-COUPLED_MPS: Final = 5.0
+LEAST_COUPLED_MPS: Final = 5.0
 LEAST_COUPLED_SAMPLES: Final = 10
-COUPLED_OVERLAP_M: Final = 0.3
+LEAST_COUPLED_OVERLAP_M: Final = 0.3
 """Two tracks are coupled (one body) if in all common samples, at least `LEAST_COUPLED_SAMPLES`, one box is within `COUPLED_GAP_M` behind
-the other and `COUPLED_ASIDE_M` to the side, at a median speed of `COUPLED_MPS`, and they overlap by `COUPLED_OVERLAP_M` in some sample."""
+the other and `COUPLED_ASIDE_M` to the side, at a median speed of at least `LEAST_COUPLED_MPS`,
+and they overlap by at least `LEAST_COUPLED_OVERLAP_M` in some sample."""
 
 
 class _Boxes(NamedTuple):
@@ -62,13 +63,13 @@ class _Boxes(NamedTuple):
     velocity: Floats
 
 
-BEGIN_OVERLAP_M: Final = 0.3
+LEAST_BEGIN_OVERLAP_M: Final = 0.3
 BEGIN_LEAST_MPS: Final = 2.0
 """If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
 doubtful."""
 LATERAL_NOISE_M: Final = 0.3
 """The noise that positions and headings add to a lateral overlap."""
-SIDE_BY_SIDE_SHARE: Final = 2 / 3
+MOST_SIDE_BY_SIDE_OVERLAP_SHARE: Final = 2 / 3
 """Two boxes that overlap laterally by at most this share of the smaller width may be side by side: the position error may be lateral."""
 IMPACT_SPEED_CHANGE_MPS: Final = 1.5
 """A velocity that changes by more than this between two samples may be caused by an impact."""
@@ -86,7 +87,7 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
     """
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     half = _half_sizes(states, actors)
-    for a, b in _pairs_starting_together(states, actors):
+    for a, b in _pairs_close_at_start(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _rows_at_common_times(states, track_a, track_b)
         first, second = _boxes_of_rows(states, half, rows_a), _boxes_of_rows(states, half, rows_b)
@@ -121,7 +122,7 @@ def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
     for k in range(MOST_FALSE_ENTRY_SAMPLES):
         first = starts[ends - starts > MOST_FALSE_ENTRY_SAMPLES + 2] + k
         change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
-        hard = change > FALSE_ENTRY_LEAST_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
+        hard = change > FALSE_ENTRY_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
@@ -166,7 +167,7 @@ def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
         mine = _boxes_of_rows(states, half, np.full(len(other_rows), last))
         depth = _overlaps_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
-        if (depth > BEGIN_OVERLAP_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
+        if (depth > LEAST_BEGIN_OVERLAP_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_POSITION_NS
     text = (
         "tracks end with a standstill at a position from which another vehicle drives on at once, in {n} of {of} "
@@ -175,7 +176,7 @@ def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding
     return states.findings(rows, "held_track", "warning", text, quantity="existence")
 
 
-def _pairs_starting_together(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
+def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
     In the second case, only tracks with at least `LEAST_COUPLED_SAMPLES` samples are used, which excludes many short tracks of a crowd.
@@ -192,7 +193,11 @@ def _pairs_starting_together(states: States, actors: Actors) -> Iterator[tuple[i
         coupled = (
             may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _are_in_line(mine, theirs)
         )
-        near = _overlap_deeply(mine, theirs) | coupled | (_overlaps_m(mine, theirs)[0] >= BEGIN_OVERLAP_M).all(axis=0)
+        near = (
+            _overlap_deeply(mine, theirs)
+            | coupled
+            | (_overlaps_m(mine, theirs)[0] >= LEAST_BEGIN_OVERLAP_M).all(axis=0)
+        )
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
@@ -262,9 +267,9 @@ def _are_coupled(first: _Boxes, second: _Boxes) -> bool:
     line = _are_in_line(first, second)
     if len(line) < LEAST_COUPLED_SAMPLES or not line.all():
         return False
-    sunk = _overlaps_m(first, second)[0][0] >= COUPLED_OVERLAP_M
+    sunk = _overlaps_m(first, second)[0][0] >= LEAST_COUPLED_OVERLAP_M
     speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (first, second)])
-    return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
+    return bool(sunk.any() and np.nanmedian(speeds) >= LEAST_COUPLED_MPS)
 
 
 def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
@@ -275,13 +280,13 @@ def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     across, depth = _overlaps_m(first, second)[0][1], _overlaps_m(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
-    if not (together.any() and depth[0] >= BEGIN_OVERLAP_M and speeds[0] >= BEGIN_LEAST_MPS) or together.all():
+    if not (together.any() and depth[0] >= LEAST_BEGIN_OVERLAP_M and speeds[0] >= BEGIN_LEAST_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > IMPACT_SPEED_CHANGE_MPS for boxes in (first, second)]
     # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
-    if across[0] <= SIDE_BY_SIDE_SHARE * 2 * min(first.half_sizes[1][0], second.half_sizes[1][0]):
+    if across[0] <= MOST_SIDE_BY_SIDE_OVERLAP_SHARE * 2 * min(first.half_sizes[1][0], second.half_sizes[1][0]):
         most = across[together].max() + LATERAL_NOISE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)

@@ -44,7 +44,7 @@ class MeasurementErrors:
     seed: int = 0
 
     @property
-    def words(self) -> str:
+    def standard_deviations_text(self) -> str:
         """The standard deviations as text."""
         return (
             f"{self.position_m:g} m in every actor's position, {self.time_s:g} s in its clock, "
@@ -99,12 +99,12 @@ def _standard_normal_draws(copy_numbers: Sequence[int], seed: int, actor: str | 
     return drawn[list(copy_numbers)]
 
 
-def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
+def _positions_of_copies(states: pa.Table, state_errors: Floats) -> dict[str, Floats]:
     """Return the positions of all copies, concatenated; an unknown velocity counts as 0."""
     found = {}
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
-        along = np.nan_to_num(floats(states[speed])) * draws[:, :, 2]
-        found[place] = (floats(states[place]) + draws[:, :, axis] + along).ravel()
+        along = np.nan_to_num(floats(states[speed])) * state_errors[:, :, 2]
+        found[place] = (floats(states[place]) + state_errors[:, :, axis] + along).ravel()
     return found
 
 

@@ -28,7 +28,13 @@ import pyarrow.compute as pc
 from drivelint.engine.batch import BATCH_STATES, have_many_states
 from drivelint.engine.derive import derive
 from drivelint.engine.robustness.copies import copies
-from drivelint.engine.robustness.question import N_COPIES, Outcome, Question, drive_ego_and_rule, grouped_by_weight
+from drivelint.engine.robustness.question import (
+    N_COPIES,
+    OutcomeInCopies,
+    RobustnessQuestion,
+    drive_ego_and_rule,
+    worst_near_and_other_questions,
+)
 from drivelint.engine.robustness.window import N_WINDOW_SIZES, Window, set_extents, windows_to_judge
 from drivelint.errors import DriveLintError, RuleError
 from drivelint.evaluate import evaluate
@@ -49,9 +55,9 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 MOST_STATES_FOR_ONE_PASS: Final = 10_000
 """If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
 second pass."""
-_TABLES_OF_EVALUATION: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
+_TABLES_READ_BY_EVALUATION: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
 """Tables that the evaluation itself reads, except those that only unknown verdicts need."""
-_COPIED_TABLES: Final = frozenset({"capability", "registration"})
+_TABLES_COPIED_FROM_DRIVE: Final = frozenset({"capability", "registration"})
 
 
 class RobustnessJudge:
@@ -99,19 +105,22 @@ class RobustnessJudge:
             self.judge()
 
     @property
-    def n_waiting(self) -> int:
+    def n_waiting_drives(self) -> int:
         """The number of drives whose copies are not judged yet."""
         return len(self._waiting)
 
     def n_first_findings(self) -> int:
         """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
-        gravest, near, _ = grouped_by_weight(questions)
+        gravest, near, _ = worst_near_and_other_questions(questions)
         return len(questions) if self._of_all else len(gravest) + len(near)
 
-    def _questions(self, drives: Iterable[str]) -> list[Question]:
+    def _questions(self, drives: Iterable[str]) -> list[RobustnessQuestion]:
         found = self._con.execute(statement("robustness/findings"), {"drives": list(drives)}).to_arrow_table()
-        return [Question(row, self._rules[row["rule_id"]], ends_early=not self._of_all) for row in found.to_pylist()]
+        return [
+            RobustnessQuestion(row, self._rules[row["rule_id"]], ends_early=not self._of_all)
+            for row in found.to_pylist()
+        ]
 
     def judge(self, advance: Callable[[int], None] | None = None) -> None:
         """Judge copies for the findings of the waiting drives, and write `n_copies` and `n_stays`.
@@ -124,20 +133,20 @@ class RobustnessJudge:
         self._advance = advance or (lambda _: None)
         questions = self._questions(by_id)
         set_extents(questions)  # of all findings, so that the windows do not depend on which of them are judged
-        gravest, near, others = grouped_by_weight(questions)
+        gravest, near, others = worst_near_and_other_questions(questions)
         most_states = BATCH_STATES
         if have_many_states(by_id.values()):
             self._memory.release()
             most_states //= 2
         self._judge_until_settled(by_id, questions if self._of_all else [*gravest, *near], most_states)
-        doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_sure}
+        doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_finding_certain}
         self._judge_until_settled(
             by_id, [question for question in others if drive_ego_and_rule(question) in doubtful], most_states
         )
-        self._write_counts([q for q in questions if q.n_copies and q.is_settled])
+        self._write_copy_counts([q for q in questions if q.n_copies and q.is_settled])
 
     def _judge_until_settled(
-        self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int
+        self, drives: Mapping[str, Drive], questions: Sequence[RobustnessQuestion], most_states: int
     ) -> None:
         """Judge copies until all questions are settled, no larger window is left, or the run is stopped."""
         open_ = questions
@@ -153,7 +162,7 @@ class RobustnessJudge:
         """Judge windows together; if that fails, judge them one by one, so that only the faulty window gets no result."""
         try:
             with store.uniform_memory_errors():
-                found = self._outcomes_by_window(chunk)
+                found = self._outcomes_by_window_and_question(chunk)
         except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:
                 for window in chunk:
@@ -167,10 +176,10 @@ class RobustnessJudge:
             return
         for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
-                outcome = outcomes.get(id(question), Outcome())
+                outcome = outcomes.get(id(question), OutcomeInCopies())
                 question.add_copies(window.numbers, outcome.margins, outcome.passes)
 
-    def _outcomes_by_window(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
+    def _outcomes_by_window_and_question(self, chunk: Sequence[Window]) -> list[dict[int, OutcomeInCopies]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""
         made = [
             copies(window.part_with_suffix(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)
@@ -189,8 +198,8 @@ class RobustnessJudge:
                 self._con,
                 reads,
                 are_map_tables=False,
-                always_needed_tables=_TABLES_OF_EVALUATION,
-                filled_tables=_COPIED_TABLES,
+                always_needed_tables=_TABLES_READ_BY_EVALUATION,
+                filled_tables=_TABLES_COPIED_FROM_DRIVE,
             )
             judged = [rules[name] for name in sorted(rules)]
             params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
@@ -201,17 +210,17 @@ class RobustnessJudge:
             stays = self._con.execute(
                 statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_NS}
             ).fetchall()
-        found: list[dict[int, Outcome]] = [{} for _ in chunk]
+        found: list[dict[int, OutcomeInCopies]] = [{} for _ in chunk]
         for finding_no, copy_no, keeps, margin in stays:
             no, question = asked[finding_no]
-            outcome = found[no].setdefault(id(question), Outcome())
+            outcome = found[no].setdefault(id(question), OutcomeInCopies())
             if keeps:
                 outcome.margins[copy_no] = margin
             else:
                 outcome.passes.add(copy_no)
         return found
 
-    def _write_counts(self, questions: Sequence[Question]) -> None:
+    def _write_copy_counts(self, questions: Sequence[RobustnessQuestion]) -> None:
         if not questions:
             return
         rows = [
@@ -227,7 +236,7 @@ class RobustnessJudge:
         self._con.unregister("_answer")
 
 
-def _next_windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
+def _next_windows(drives: Mapping[str, Drive], questions: Sequence[RobustnessQuestion]) -> list[Window]:
     """Return the windows to judge next, with all copies at once if that costs less than another pass."""
     found = windows_to_judge(drives, questions, N_COPIES)
     more = sum(window.n_states * (N_COPIES[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1)

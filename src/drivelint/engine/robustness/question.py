@@ -34,7 +34,7 @@ NOT_FAR_MULTIPLE: Final = 10.0
 
 
 @dataclass
-class Question:
+class RobustnessQuestion:
     """A finding, and what its copies have shown so far."""
 
     finding: dict[str, Any]
@@ -62,13 +62,13 @@ class Question:
         return "overtake" in tables_with_sources(self.rule.reads)
 
     @property
-    def is_near(self) -> bool:
+    def is_near_threshold(self) -> bool:
         """Whether the margin is so small that errors of a decimetre may remove the finding."""
         return self._is_margin_within(1.0)
 
-    def _is_margin_within(self, share: float) -> bool:
+    def _is_margin_within(self, n_small_margins: float) -> bool:
         margin = self.finding["margin"]
-        return margin is not None and abs(margin) <= share * SMALL_MARGIN.get(self.rule.unit or "", 0.0)
+        return margin is not None and abs(margin) <= n_small_margins * SMALL_MARGIN.get(self.rule.unit or "", 0.0)
 
     @property
     def next_copy_numbers(self) -> range:
@@ -89,7 +89,7 @@ class Question:
             self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_KEEPING_SHARE) * most
         ):
             return True
-        if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
+        if self.n_stays < self.n_copies or self.is_near_threshold or self.is_doubtful:
             return False
         return self.n_copies >= (few if self._are_margins_far_from_zero else more)
 
@@ -102,7 +102,7 @@ class Question:
         return abs(float(np.mean(known))) >= FAR_STANDARD_DEVIATIONS * float(np.std(known))
 
     @property
-    def is_sure(self) -> bool:
+    def is_finding_certain(self) -> bool:
         """Whether the copies show that the finding is certain, not only possible."""
         return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_KEEPING_SHARE * self.n_copies
 
@@ -120,7 +120,9 @@ class Question:
         same = 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6))
         if not same:
             self.restart_with_size(self.size + 1)
-        elif self._has_all_steps_of_finding or self._is_decided(numbers, {*margins, *passes}, len(margins) - 1):
+        elif self._has_all_steps_of_finding or self._may_undecided_copies_be_lost(
+            numbers, {*margins, *passes}, len(margins) - 1
+        ):
             self.n_copies = numbers[-1]
             self.n_stays += len(margins) - 1
             self.margins += [margin for number, margin in margins.items() if number]
@@ -135,7 +137,9 @@ class Question:
         whole = start <= self.finding["t_start_ns"] and end >= self.finding["t_end_ns"]
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
-    def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
+    def _may_undecided_copies_be_lost(
+        self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int
+    ) -> bool:
         """Return whether undecided copies may count as lost: there are none, or the finding is only possible even if they keep it."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
         return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_KEEPING_SHARE * N_COPIES[-1]
@@ -146,23 +150,29 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class OutcomeInCopies:
     """The result of a finding in a window: copies that keep it, with their margins, and copies in which the worst step passes."""
 
     margins: dict[int, float | None] = field(default_factory=dict)
     passes: set[int] = field(default_factory=set)
 
 
-def drive_ego_and_rule(question: Question) -> tuple[str, ...]:
+def drive_ego_and_rule(question: RobustnessQuestion) -> tuple[str, ...]:
     """Return the drive, ego and rule of a finding."""
     return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
 
 
-def grouped_by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
+def worst_near_and_other_questions(
+    questions: Sequence[RobustnessQuestion],
+) -> tuple[list[RobustnessQuestion], list[RobustnessQuestion], list[RobustnessQuestion]]:
     """Return the questions in three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; all
     remaining ones."""
-    gravest: dict[tuple[str, ...], Question] = {}
+    gravest: dict[tuple[str, ...], RobustnessQuestion] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(drive_ego_and_rule(question), question)
     others = [question for question in questions if gravest[drive_ego_and_rule(question)] is not question]
-    return list(gravest.values()), [q for q in others if q.is_near], [q for q in others if not q.is_near]
+    return (
+        list(gravest.values()),
+        [q for q in others if q.is_near_threshold],
+        [q for q in others if not q.is_near_threshold],
+    )

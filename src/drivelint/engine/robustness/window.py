@@ -110,9 +110,11 @@ class Window:
         actors = replace_columns(part.trace.tables["actor"], {"is_ego": is_ego.combine_chunks()})
         return replace(part, trace=replace(part.trace, tables={**part.trace.tables, "actor": actors}))
 
-    def part_with_suffix(self, name: str) -> Drive:
+    def part_with_suffix(self, id_suffix: str) -> Drive:
         """Return the part as a drive whose id is that of the whole drive with this suffix."""
-        return replace(self._part_of_drive, trace=with_drive_id(self._part_of_drive.trace, f"{self.drive_id}~{name}"))
+        return replace(
+            self._part_of_drive, trace=with_drive_id(self._part_of_drive.trace, f"{self.drive_id}~{id_suffix}")
+        )
 
     @property
     def n_states(self) -> int:

@@ -19,7 +19,7 @@ from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, rows_sha256, with_key
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.fleet_report.audit_views import open_packed_audit
-from drivelint.pack import again, consistency, signature
+from drivelint.pack import consistency, reproduction, signature
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.bag import DATA, Problem
@@ -176,8 +176,8 @@ def _problems_of_drive(
         return [Problem("inputs do not match the result", str(error))]
     pack.n_judged += 1
     try:
-        fresh = again.check_again(drive.result, check_request, None, evidence=False)
-        evidence = again.evidence_of_findings(
+        fresh = reproduction.check_again(drive.result, check_request, None, evidence=False)
+        evidence = reproduction.evidence_of_findings(
             drive.result, check_request, loaded_rules=[*(pack.rules_by_id or {}).values()]
         )
     except DriveLintError as error:
@@ -195,7 +195,7 @@ def _problems_of_drive(
         for file, content in contents.items()
     }
     other_libraries = pack.evidence["packed_with"] != library_versions()
-    differing, other_bytes = again.file_differences(pack.folder, files, {}, other_libraries=other_libraries)
+    differing, other_bytes = reproduction.file_differences(pack.folder, files, {}, other_libraries=other_libraries)
     pack.other_bytes |= other_bytes
     there = {path.relative_to(pack.folder).as_posix() for path in (pack.folder / place).rglob("*") if path.is_file()}
     extra = sorted(there - files.keys())
@@ -232,7 +232,7 @@ def _problems_of_finding_sql(pack: _AuditPack, drive: tables.PackedDrive) -> lis
 
 def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rule] | None:
     try:
-        return {rule.id: rule for rule in again.rules_of_table(rules, rules_dirs)}
+        return {rule.id: rule for rule in reproduction.rules_of_table(rules, rules_dirs)}
     except UsageError:
         return None
 

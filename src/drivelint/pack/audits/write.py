@@ -14,7 +14,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import UsageError
 from drivelint.fleet_report.audit_views import open_audits, open_packed_audit
-from drivelint.pack import again, contents
+from drivelint.pack import contents, reproduction
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.copying import copy_into_new_folder, copy_rule_files, copy_rules_dirs, write_files
@@ -50,7 +50,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
         rules = pq.read_table(pack_folder / tables.AUDIT_FOLDER / RULES_FILE)
         findings = tables.worst_findings(con, request.findings)
         dirs = tables.judge_settings(audit).rules_dirs
-        loaded_rules = again.rules_of_table(rules, dirs)
+        loaded_rules = reproduction.rules_of_table(rules, dirs)
         copy_rule_files(loaded_rules, pack_folder)
         inputs = _InputCopier(pack_folder, with_inputs=request.with_inputs)
         given = tables.given_logs_by_sha256(con, findings, request.traces)
@@ -81,7 +81,7 @@ def _write_findings_of_drive(
 ) -> list[dict[str, Any]]:
     """Write the data that reproduce the findings of a drive; return their entries for `evidence.json`."""
     place = f"{contents.FINDINGS_FOLDER}/{drive.key}"
-    evidence = again.evidence_of_findings(drive.result, check_request, loaded_rules=loaded_rules)
+    evidence = reproduction.evidence_of_findings(drive.result, check_request, loaded_rules=loaded_rules)
     for name, files in evidence.items():
         if isinstance(files, dict):
             write_files(files, pack_folder / place / name, pack_folder)
@@ -105,15 +105,15 @@ class _InputCopier:
         if (
             check_request.mapping is not None and Path(check_request.mapping).is_file()
         ):  # else the name of a built-in mapping
-            self.mappings[key] = self._place(Path(check_request.mapping), "mapping")
+            self.mappings[key] = self._copy_once(Path(check_request.mapping), "mapping")
         if not self._with_inputs:
             return
         (log,) = check_request.traces.values()
-        self.traces[key] = self._place(Path(log), "inputs/traces")
+        self.traces[key] = self._copy_once(Path(log), "inputs/traces")
         if (road := check_request.map or check_request.map_dir) is not None:
-            self.maps[key] = self._place(road, "inputs/maps")
+            self.maps[key] = self._copy_once(road, "inputs/maps")
 
-    def _place(self, source: Path, folder: str) -> str:
+    def _copy_once(self, source: Path, folder: str) -> str:
         if source not in self._places:
             place = self._work / "data" / folder / str(len(self._places))
             self._places[source] = copy_into_new_folder(source, place, self._work)

@@ -122,7 +122,7 @@ def certainty_on_page(finding: Row, same_contact_findings: Sequence[Row] = ()) -
         return {"kind": "", "label": "not tested", "why": "no copies with assumed errors were judged"}
     of = f"{finding['n_stays']} of {finding['n_copies']}"
     only = "only " if said == POSSIBLE else ""
-    why = f"it is also a finding in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().words})"
+    why = f"it is also a finding in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().standard_deviations_text})"
     if others := other_certainty_words(finding, same_contact_findings):
         why += f"; {others}"
     return {"kind": said, "label": f"{said}, {of}", "why": why}

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 MANIFEST: Final = "files.json"
 """The list of the files that drivelint wrote into a folder and below it."""
-MANIFEST_KEY: Final = "written_by_drivelint"
+MANIFEST_FILES_KEY: Final = "written_by_drivelint"
 """The field of `MANIFEST` that contains the file names."""
-RESULT_GLOBS: Final = (
+RESULT_GLOBS_WITH_LOG_SUFFIX: Final = (
     *(
         f"{name}.parquet"
         for name in (
@@ -24,11 +24,11 @@ RESULT_GLOBS: Final = (
     "annotated/*.mcap",
 )  # fmt: skip
 """Globs of the files of `check --out` that have a log's suffix. They apply even if the list is missing, as in a copy of some files."""
-AUDIT_GLOBS: Final = ("rules.parquet", "batches/*/*.parquet", "tables/*/*.parquet")
+AUDIT_GLOBS_WITH_LOG_SUFFIX: Final = ("rules.parquet", "batches/*/*.parquet", "tables/*/*.parquet")
 """Globs of the files of `audit --out` that have a log's suffix. They apply even if the audit has not ended, and so has no list."""
 
 
-class OwnFiles:
+class DrivelintFiles:
     """The files that drivelint wrote into a folder and its subfolders, according to the lists there."""
 
     def __init__(self, searched_folder: Path) -> None:
@@ -54,9 +54,9 @@ class OwnFiles:
         if folder not in self._written:
             names = frozenset(written_files(folder))
             globs = (
-                RESULT_GLOBS
+                RESULT_GLOBS_WITH_LOG_SUFFIX
                 if _is_result_folder(folder)
-                else AUDIT_GLOBS
+                else AUDIT_GLOBS_WITH_LOG_SUFFIX
                 if _is_audit_folder(folder) and not names
                 else ()
             )
@@ -67,7 +67,7 @@ class OwnFiles:
 def written_files(folder: Path) -> set[str]:
     """Return the names of the files that drivelint wrote into a folder, except the list itself; empty without a valid list."""
     try:
-        return set(map(str, json.loads((folder / MANIFEST).read_text(encoding="utf-8"))[MANIFEST_KEY]))
+        return set(map(str, json.loads((folder / MANIFEST).read_text(encoding="utf-8"))[MANIFEST_FILES_KEY]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()  # there is no list, or another program wrote it
 

@@ -124,14 +124,14 @@ def _evidence_of_drive(
     params = param_values_by_rule(mine, check_request)
     found: Evidence = {}
 
-    def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
+    def gather_evidence(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
         for rule in mine:
             rows = [row for row in findings if row["rule_id"] == rule.id]
             found.update(_evidence_of_rule(con, rule, params[rule.id], rows))
 
     with store.workspace(memory) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
-        session = JudgingSession(con, mine, params, None, observers=[look], memory=MemoryLimit(con, memory))
+        session = JudgingSession(con, mine, params, None, observers=[gather_evidence], memory=MemoryLimit(con, memory))
         session.judge([drive])
         session.close()
     return found
