@@ -15,7 +15,7 @@ import pytest
 
 from drivelint.audit import merge
 from drivelint.audit.claims import Claims
-from drivelint.audit.driver import TASK_DRIVES, divide_into_tasks
+from drivelint.audit.driver import MAX_TASK_DRIVES, divide_into_tasks
 from drivelint.audit.model import AuditDrive, JudgeSettings
 from drivelint.audit.store import LocalFolder
 from drivelint.drive.trace import DriveInput
@@ -66,7 +66,7 @@ def test_what_a_dead_one_has_claimed_is_taken_over(tmp_path: Path) -> None:
 
 def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
-    n = 3 * TASK_DRIVES
+    n = 3 * MAX_TASK_DRIVES
     done: list[list[str]] = [[], []]
 
     def share(no: int) -> None:
@@ -74,7 +74,7 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
         with claims.keep_alive():
             while True:
                 given = divide_into_tasks(
-                    claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), group_size=TASK_DRIVES
+                    claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), group_size=MAX_TASK_DRIVES
                 )
                 for task in given:
                     done[no] += [drive.log for drive in task.drives]
@@ -82,7 +82,7 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
                 if not claims.n_waiting:
                     return
                 if not claims.n_claimed:
-                    claims.wait_for_others()
+                    claims.pause_before_next_pass()
 
     threads = [threading.Thread(target=share, args=[no], daemon=True) for no in range(2)]
     for thread in threads:

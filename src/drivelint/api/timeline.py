@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 from drivelint.api.tables import Table
 from drivelint.incident.finding import named_finding
 from drivelint.report.html.environment import page_environment
-from drivelint.report.html.strips import box_distance_line, strips
+from drivelint.report.html.moment_charts import box_distance_line, charts_below_plan_view
 from drivelint.report.html.worst_moment import finding_key
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def timeline(result: Result, name: str) -> Timeline:
             **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _VALUE_COLUMNS},
         }
     )
-    drawn = None if scene is None else strips(scene, row, course, finding.rule["observes"], start_ns)
+    drawn = None if scene is None else charts_below_plan_view(scene, row, course, finding.rule["observes"], start_ns)
     return Timeline(table, drawn, f"{row['rule_id']} in {row['drive_id']}")
 
 

@@ -17,9 +17,9 @@ from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, open_database, remove_drives
 from drivelint.audit.driver import (
+    MAX_TASK_DRIVES,
     SUBMITTED_TASKS_PER_WORKER,
-    TASK_DRIVES,
-    Driver,
+    TaskDriver,
     divide_into_tasks,
     max_drives_per_task,
 )
@@ -57,7 +57,7 @@ RULES_FILE: Final = "rules.parquet"
 _LISTED_RECEIPTS: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
-WORKER_BYTES: Final = 500_000_000
+WORKER_BYTES_BESIDE_DATABASE: Final = 500_000_000
 """Bytes that a worker needs besides its database: for the program, its libraries, and the log that it reads."""
 
 
@@ -204,10 +204,10 @@ def _judge_remaining(
     )
     try:
         with claims.keep_alive() if claims else nullcontext():
-            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else TASK_DRIVES
+            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else MAX_TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = max_drives_per_task(n_left, workers.capacity)
-            driver = Driver(
+            driver = TaskDriver(
                 workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
             )
             while True:
@@ -221,18 +221,20 @@ def _judge_remaining(
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_claimed:
-                    claims.wait_for_others()
+                    claims.pause_before_next_pass()
     finally:
         workers.close()
     return audit_summary
 
 
 def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
-    """Return the settings with a memory limit of the database that leaves `WORKER_BYTES` to its worker. This changes no result."""
+    """Return the settings with a memory limit of the database that leaves `WORKER_BYTES_BESIDE_DATABASE` to its worker.
+    This changes no result.
+    """
     if request.worker_memory is None:
         return request.settings
     memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
-    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES)
+    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES_BESIDE_DATABASE)
     return replace(request.settings, memory=min(memory, left))
 
 

@@ -49,7 +49,7 @@ class WorstTagValue(NamedTuple):
         return self.rates[0]
 
     @property
-    def option(self) -> str:
+    def report_option(self) -> str:
         """The option of `report` that shows all rules by the tag, quoted for a shell."""
         return shlex.join(["--by", self.tag])
 

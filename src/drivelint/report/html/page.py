@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
-from drivelint.report.html.explanations import glossary_entries, notes_on_known_logs
+from drivelint.report.html.explanations import glossary_entries, notes_on_published_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
 from drivelint.report.html.overtakes import MOST_SHOWN_SDA_M, overtake_views, overtaking_opportunities
 from drivelint.report.html.pictures import add_pictures, cameras_by_moment
@@ -53,7 +53,7 @@ MAX_CHARTS: Final = 150
 """The page shows the measured values over time of this many of the worst findings and near misses."""
 MAX_DRIVE_SECTIONS: Final = 60
 """This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
-MAX_UNFOLDED_DRIVES: Final = 3
+UNFOLDED_UP_TO_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
 
 BRIEF_ABOVE_DRIVES: Final = 20
@@ -95,7 +95,7 @@ def content(result: Result) -> dict[str, Any]:
             timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
             incidents(listed.get(row["drive_id"], []), drawn, row),
             involved_actors(listed.get(row["drive_id"], []), scenes),
-            unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
+            unfolded=len(drives) <= UNFOLDED_UP_TO_DRIVES,
         )
         for row in drives
         if row["drive_id"] in shown
@@ -133,7 +133,7 @@ def content(result: Result) -> dict[str, Any]:
         "broken": broken,
         "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
         "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
-        "notes": notes_on_known_logs([row for row in drives if row["status"] == "judged"]),
+        "notes": notes_on_published_logs([row for row in drives if row["status"] == "judged"]),
         "packs": overview.pack_summaries(result),
         "stories": told_of,
         "findings": failed,
