@@ -31,7 +31,7 @@ from drivelint.incident import (
 from drivelint.incident.command import reproducing_commands
 from drivelint.incident.finding import named_finding
 from drivelint.incident.motion import MotionOfParties
-from drivelint.incident.sheet import _sudden_contact_sentence, template_values
+from drivelint.incident.sheet import _contact_by_speed_change_sentence, template_values
 from drivelint.incident.sizes import size_source_text
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -390,12 +390,14 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert "sizes are assumed, not recorded" in told["rests"]
     motion = MotionOfParties.of_steps(case.ego_rows.steps, case.finding.moment_ns)
     unknown = np.full_like(motion.gap, np.nan)
-    assert "whether the boxes touch is not known (no gap is known" in _sudden_contact_sentence(
+    assert "whether the boxes touch is not known (no gap is known" in _contact_by_speed_change_sentence(
         case, replace(motion, gap=unknown)
     )
     one = np.where(motion.t == 0, motion.gap, unknown)
-    assert "whether the boxes touch is not known (least gap" in _sudden_contact_sentence(case, replace(motion, gap=one))
-    assert _sudden_contact_sentence(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
+    assert "whether the boxes touch is not known (least gap" in _contact_by_speed_change_sentence(
+        case, replace(motion, gap=one)
+    )
+    assert _contact_by_speed_change_sentence(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
 
 
 @pytest.mark.ci

@@ -58,7 +58,7 @@ class Claims:
             beat.join()
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
-    def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
+    def claim_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
         """Yield the drives that this audit claims in one pass over `todo`, the drives that have no result yet.
 
         Afterwards, `n_waiting` is the number of drives that other live audits have claimed; later these are done or free. The method never

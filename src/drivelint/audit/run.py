@@ -211,7 +211,7 @@ def _judge_remaining(
                 workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
             )
             while True:
-                todo = claims.claimed_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
+                todo = claims.claim_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
                 settings, n_small = _settings_of_workers(request), workers.capacity
                 driver.run(
                     divide_into_tasks(
@@ -324,7 +324,7 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     ):
         if isinstance(results, LocalFolder):
             results.remove_unfinished_files()
-        sealed.require_rows_unchanged(results, out, packed=not _is_sealed(results, out))
+        sealed.require_rows_unchanged(results, out, packed=not _has_intact_seal(results, out))
         results.delete(list(results.names("claims")))
         audit_summary = _pack_and_seal(con, results, Path(downloads), 0, parts.unfinished_parts(results))
         if delta_dest is not None:
@@ -361,7 +361,7 @@ def _create_or_check_settings(request: AuditRequest, results: ResultStore, run_h
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
-        was_unchanged = _is_sealed(results, request.out)
+        was_unchanged = _has_intact_seal(results, request.out)
         sealed.unseal(results)
         results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
@@ -386,7 +386,7 @@ def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
     )
 
 
-def _is_sealed(results: ResultStore, dest: str) -> bool:
+def _has_intact_seal(results: ResultStore, dest: str) -> bool:
     with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
         return sealed.require_listed_files_unchanged(results, Path(downloads), dest)
 

@@ -158,7 +158,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "errors": MeasurementErrors().words,
         "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
         "sure": _certainty_values(case),
-        "rests": _sudden_contact_sentence(case, motion),
+        "rests": _contact_by_speed_change_sentence(case, motion),
         "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _fitted_log_warnings(case),
         "again": matching_finding(case.ego_rows.verdicts if finding.is_near_miss else case.ego_rows.findings, row),
@@ -369,7 +369,7 @@ def _certainty_values(case: Case) -> dict[str, Any]:
     return told
 
 
-def _sudden_contact_sentence(case: Case, motion: MotionOfParties) -> str:
+def _contact_by_speed_change_sentence(case: Case, motion: MotionOfParties) -> str:
     """Return in words how a contact is known if no boxes overlap: from a sudden change of speed; '' for other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
