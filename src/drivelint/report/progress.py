@@ -20,7 +20,7 @@ TELL_EVERY_S: Final = 60.0
 _CHECK_PERIOD_S: Final = 1.0
 _LEAST_SHARE_FOR_ESTIMATE: Final = 0.1
 """The remaining time is estimated after this share of the work."""
-_EARLIER_RUN_WORK_WITHIN_S: Final = 0.5
+_RESUMED_UNITS_REPORTED_WITHIN_S: Final = 0.5
 """Units that are reported within this time after the beginning of a stage were done by an earlier run."""
 
 
@@ -64,7 +64,7 @@ class NotePrinter(Silent):
     def advance(self, n: int = 1) -> None:
         """Count the units, and print the progress if the last progress line is at least a minute old."""
         self._done, self._part = self._done + n, 0.0
-        if time.monotonic() - self._begun_s < _EARLIER_RUN_WORK_WITHIN_S:
+        if time.monotonic() - self._begun_s < _RESUMED_UNITS_REPORTED_WITHIN_S:
             self._had = self._done  # done by an earlier run: not used to estimate the time left
         self.print_progress_if_due()
 

@@ -20,7 +20,7 @@ WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
 _HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a chart, of the text above it, of the time axis
 _MOST_JOINED_NS: Final = 1_000_000_000
-_LEAST_VALUES: Final = 3
+_LEAST_VALUES_FOR_CHART: Final = 3
 """The least number of values for which a chart is drawn."""
 _CHAR_WIDTH: Final = 6.6
 """The greatest average width of a character above a chart, over all fonts of the page."""
@@ -46,7 +46,7 @@ def charts_below_plan_view(
     ego = scene["actors"][0]
     way = ego["path"] or []
     met = next((a for a in scene["actors"][1:] if a["actor_id"] == finding["object_id"] and a["path"]), None)
-    if len(way) < _LEAST_VALUES:
+    if len(way) < _LEAST_VALUES_FOR_CHART:
         return None
     t = [point["t_ns"] for point in way]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
@@ -59,7 +59,7 @@ def charts_below_plan_view(
             ("offset from the lane's centre, left positive", "m", "d_m"),
         )
     ]
-    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES
+    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES_FOR_CHART
     is_gap = measured and finding["unit"] == "m"
     if met and not is_gap and (gap := box_distance_line(ego, met)) is not None:
         drawn.append(("distance from box to box", "m", [gap]))
@@ -69,7 +69,11 @@ def charts_below_plan_view(
             ChartLine("ego", "observed", course["t_ns"], course["observed"]),
         ]
         drawn.append((observes or "what the rule measures", finding["unit"] or "", lines))
-    kept = [each for each in drawn if any(sum(v is not None for v in line.values) >= _LEAST_VALUES for line in each[2])]
+    kept = [
+        each
+        for each in drawn
+        if any(sum(v is not None for v in line.values) >= _LEAST_VALUES_FOR_CHART for line in each[2])
+    ]
     found = [
         _chart_of_quantity(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
         for n, each in enumerate(kept)
