@@ -53,7 +53,7 @@ class DeltaChange(NamedTuple):
     n_added: int
     n_removed: int
 
-    def text(self, dest: str) -> str:
+    def sentence(self, dest: str) -> str:
         """Return the numbers as a sentence."""
         if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"

@@ -300,7 +300,7 @@ def _write_delta(
         return
     progress.stage("writing Delta tables", None)
     progress.note(
-        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).text(dest)
+        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).sentence(dest)
     )
 
 

@@ -76,7 +76,7 @@ def content(result: Result) -> dict[str, Any]:
     told = counts.verdict_counts_by(result.verdicts, "drive_id")
     counted = one_per_event_and_status(result.gate, result.findings.to_pylist())
     by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
-    rows = _worst_rows(result, rules)
+    rows = _worst_findings_and_near_misses(result, rules)
     shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
     lines = _finding_lines(result, rows, rules, starts, courses, linked_drives=shown)
@@ -174,7 +174,7 @@ def content(result: Result) -> dict[str, Any]:
     }
 
 
-def _worst_rows(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row]]:
+def _worst_findings_and_near_misses(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row]]:
     """Return the findings (`fail`), then the near misses (`near`) that the page shows, the worst first."""
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
     failed = worst_first(result.findings, rules).slice(0, MAX_FINDINGS).to_pylist()
