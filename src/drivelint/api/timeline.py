@@ -73,7 +73,7 @@ class Timeline(Table):
 def timeline(result: Result, name: str) -> Timeline:
     """Return the timeline of a finding. `name`: as in `CheckResult.timeline`. Errors: `UsageError` for an unknown finding."""
     finding = named_finding(result, name)
-    row, start_ns = finding.row, finding.start_ns
+    row, start_ns = finding.row, finding.drive_start_ns
     at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
     scene = next(iter(_matching_rows(result.scenes, at)), None)
     courses = _matching_rows(result.courses, {"finding_id": row["finding_id"]})
