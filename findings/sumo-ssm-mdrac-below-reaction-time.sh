@@ -6,7 +6,7 @@
 # (infinite), `maxMDRAC` is at that step, and any threshold counts it.
 # Seen: the value is negative there, and runs through a pole on either side of the reaction time. 8 m behind: the time to collision is 0.3 to 0.7 s, the
 # braking that is needed 9 m/s2, MDRAC -18 to -2 m/s2, `maxMDRAC` 0.16 m/s2: with the threshold 3.4 m/s2 this encounter is in no log, while the one of
-# 20 m (1.6 s, 3.6 m/s2) is. 12 m behind: `maxMDRAC` is 242 m/s2 after the least time to collision, when the car is nearly safe.
+# 20 m (1.6 s, 3.6 m/s2) is. 12 m behind: `maxMDRAC` is 242 m/s2, 0.3 s after the least time to collision.
 # Why it matters: conflicts of simulated traffic are counted by these thresholds, and limits of rules are chosen from their distribution: the
 # conflicts that matter most are missing from it, and those that pass the reaction time have any value.
 set -euo pipefail

@@ -15,7 +15,7 @@ import pytest
 
 from drivelint.audit import merge
 from drivelint.audit.claims import Claims
-from drivelint.audit.driver import TASK_DRIVES, divide_into_tasks
+from drivelint.audit.driver import MAX_TASK_DRIVES, divide_into_tasks
 from drivelint.audit.model import AuditDrive, JudgeSettings
 from drivelint.audit.store import LocalFolder
 from drivelint.drive.trace import DriveInput
@@ -40,16 +40,16 @@ def test_each_drive_is_given_to_one_of_two(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     first, second = Claims(results, 0.5), Claims(results, 0.5)
     with first.keep_alive(), second.keep_alive():
-        one = first.claimed_drives(_drives(6))
+        one = first.claim_drives(_drives(6))
         got = [next(one), next(one)]
-        rest = list(second.claimed_drives(_drives(6)))
+        rest = list(second.claim_drives(_drives(6)))
         assert second.n_waiting == 2
         assert list(one) == []
         assert first.n_waiting == 4
         first.mark_done(got)
         second.mark_done(rest)
         for each in (first, second):
-            assert list(each.claimed_drives(_drives(6))) == []
+            assert list(each.claim_drives(_drives(6))) == []
             assert each.n_waiting == 0
     assert sorted(drive.log for drive in got + rest) == [f"log{i}" for i in range(6)]
 
@@ -58,15 +58,15 @@ def test_what_a_dead_one_has_claimed_is_taken_over(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     dead = Claims(results, 0.3)
     with dead.keep_alive():
-        next(iter(dead.claimed_drives(_drives(3))))
+        next(iter(dead.claim_drives(_drives(3))))
     living = Claims(results, 0.3)
     with living.keep_alive():
-        assert [drive.log for drive in living.claimed_drives(_drives(3))] == ["log0", "log1", "log2"]
+        assert [drive.log for drive in living.claim_drives(_drives(3))] == ["log0", "log1", "log2"]
 
 
 def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
-    n = 3 * TASK_DRIVES
+    n = 3 * MAX_TASK_DRIVES
     done: list[list[str]] = [[], []]
 
     def share(no: int) -> None:
@@ -74,7 +74,7 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
         with claims.keep_alive():
             while True:
                 given = divide_into_tasks(
-                    claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), group_size=TASK_DRIVES
+                    claims.claim_drives(_drives(n)), "", "run", JudgeSettings(), group_size=MAX_TASK_DRIVES
                 )
                 for task in given:
                     done[no] += [drive.log for drive in task.drives]
@@ -82,7 +82,7 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
                 if not claims.n_waiting:
                     return
                 if not claims.n_claimed:
-                    claims.wait_for_others()
+                    claims.pause_before_next_pass()
 
     threads = [threading.Thread(target=share, args=[no], daemon=True) for no in range(2)]
     for thread in threads:

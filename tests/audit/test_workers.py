@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint.audit import AuditRequest, AuditSummary, audit
-from drivelint.audit.driver import Driver
+from drivelint.audit.driver import TaskDriver
 from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.executors import local as pool
 from drivelint.audit.model import AuditDrive, JudgeSettings, Task
@@ -78,7 +78,7 @@ def test_an_unexpected_error_costs_one_drive_after_three_tries(error: Exception,
     told: list[Receipt] = []
     executor = Meets("b", error)
     task = Task(tuple(AuditDrive(name, DriveInput()) for name in "abc"), str(tmp_path), "", JudgeSettings())
-    Driver(executor, LocalFolder(tmp_path), told.append).run([task])
+    TaskDriver(executor, LocalFolder(tmp_path), told.append).run([task])
     assert executor.n_drives == [3, 1, 1, 1, 1]
     (receipt,) = told
     assert (receipt.log, receipt.status) == ("b", "quarantined")
@@ -88,7 +88,7 @@ def test_an_unexpected_error_costs_one_drive_after_three_tries(error: Exception,
 def test_an_error_of_the_run_ends_it(tmp_path: Path) -> None:
     task = Task((AuditDrive("b", DriveInput()),), str(tmp_path), "", JudgeSettings())
     with pytest.raises(OutputError):
-        Driver(Meets("b", OutputError("full")), LocalFolder(tmp_path), lambda _receipt: None).run([task])
+        TaskDriver(Meets("b", OutputError("full")), LocalFolder(tmp_path), lambda _receipt: None).run([task])
 
 
 class Clocks:

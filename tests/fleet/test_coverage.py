@@ -64,7 +64,7 @@ def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
     assert ("weather", "wet") not in never
     assert ("speed_band", "60 to 90 km/h") not in never
     assert ("speed_band", "0 to 15 km/h") in never
-    untold = found.untold()
+    untold = found.situations_never_known()
     assert "light" in untold
     assert "weather" not in untold
     assert not set(untold) & {situation for situation, _ in never}, "of what nobody knows nothing is said"

@@ -6,7 +6,7 @@ import duckdb
 
 from drivelint.fleet.rates import rates
 from drivelint.fleet_report.by_tag import rates_by_tag
-from drivelint.fleet_report.figures import lower_bound_texts
+from drivelint.fleet_report.figures import lower_bound_instead_of_zero
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.report.synthetic import rule
@@ -46,7 +46,7 @@ def test_a_rate_that_leaves_findings_out_is_told_by_its_lower_bound() -> None:
             rows = verdicts if is_told else [*verdicts, said("a", "fail", rule_id="b.contact")]
             audits.add_rows(con, drives, rows, [found(of, rule_id="b.contact")], RULES[1:2])
             (rate,) = rates(con)
-        told = lower_bound_texts(rate)
+        told = lower_bound_instead_of_zero(rate)
         assert (told is not None) == is_told
         if told is not None:
             assert told[0].startswith("at least 0.0")

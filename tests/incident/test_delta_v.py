@@ -12,7 +12,7 @@ import pytest
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
 from drivelint.incident.delta_v import delta_v_text, greatest_delta_v
-from drivelint.incident.motion import Motion
+from drivelint.incident.motion import MotionOfParties
 from tests.incident.straight import STEP_S, steps
 
 if TYPE_CHECKING:
@@ -22,9 +22,9 @@ BEFORE = 9
 """The step before the contact, which is at 1 s."""
 
 
-def struck(*after: tuple[float, float], n: int = 20) -> Motion:
+def struck(*after: tuple[float, float], n: int = 20) -> MotionOfParties:
     """Return an ego that drives east at 5 m/s until 1 s, then has these velocities, the last of them to the end."""
-    motion = Motion.of_steps(steps(np.full(n, 5.0), np.arange(n) * 5.0 * STEP_S, 300.0), 1_000_000_000)
+    motion = MotionOfParties.of_steps(steps(np.full(n, 5.0), np.arange(n) * 5.0 * STEP_S, 300.0), 1_000_000_000)
     velocity = np.array([(5.0, 0.0)] * (BEFORE + 1) + [*after] + [after[-1]] * n, np.float64)[:n].T
     return replace(motion, velocity=(velocity, motion.velocity[1]))
 

@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.errors import UsageError
-from drivelint.incident import IncidentRequest, other_matching_drives, possible_sheet_ids, sheet_html
+from drivelint.incident import IncidentRequest, other_drives_with_named_finding, possible_sheet_ids, sheet_html
 from drivelint.incident.finding import named_finding, near_misses
 from drivelint.incident.sheet import template_values
 from drivelint.pack import sheets
@@ -48,7 +48,7 @@ def test_it_says_that_the_rule_was_kept_and_by_how_much(case_of: CaseOf) -> None
 def test_it_has_the_closing_speed_of_its_moment(case_of: CaseOf) -> None:
     log = fixture_log(OVERTAKE / "near_miss.csv")
     case = case_of(NAME)
-    at = (case.finding.moment_ns - case.finding.start_ns) / 1e9
+    at = (case.finding.moment_ns - case.finding.drive_start_ns) / 1e9
     beside = [round(at + shift, 3) for shift in (-0.1, 0.1)]
     by_places = closing_by_places(log["ego"], log["oncoming"], *beside)
     assert case.finding.row["closing_mps"] == pytest.approx(by_places, abs=0.3)
@@ -85,4 +85,4 @@ def test_a_finding_comes_before_a_near_miss(folder: Path) -> None:
 
 
 def test_other_drives_with_near_misses_are_named(folder: Path) -> None:
-    assert other_matching_drives(IncidentRequest(NAME, folder)) == []
+    assert other_drives_with_named_finding(IncidentRequest(NAME, folder)) == []

@@ -10,7 +10,7 @@ import pytest
 import drivelint
 from drivelint.demo import ROAD_FILE
 from drivelint.incident import IncidentRequest, judge_parties_again
-from drivelint.incident.motion import Motion
+from drivelint.incident.motion import MotionOfParties
 
 
 @pytest.mark.parametrize("has_map", [True, False])
@@ -24,4 +24,7 @@ def test_offsets_from_the_lane(tmp_path: Path, has_map: bool) -> None:
     assert ways
     assert any(point["d_m"] is not None for way in ways for point in way) == has_map
     case = judge_parties_again(IncidentRequest(result.findings.rows()[0]["finding_id"], tmp_path / "out"))
-    assert any(np.isfinite(offset).any() for offset in Motion.of_steps(case.again.steps, 0).lane_offset) == has_map
+    assert (
+        any(np.isfinite(offset).any() for offset in MotionOfParties.of_steps(case.ego_rows.steps, 0).lane_offset)
+        == has_map
+    )

@@ -103,20 +103,20 @@ def test_a_real_contact_is_on_two_pages_with_all_that_was_broken(run: str, tmp_p
 
 def crowded(case: Case, *, all_broken: bool) -> Case:
     """Return a case in which no rule is decided for both parties, each for a long reason of its own; or every other rule was broken."""
-    finding = case.again.findings[0]
+    finding = case.ego_rows.findings[0]
     reason = "a reason of many words, as a rule may write it about one of many objects " * 3
     rules = case.result.rules.to_pylist()
     broken = rules[::2] if all_broken else []
     findings = [{**finding, "rule_id": rule["rule_id"], "reason": reason} for rule in broken]
     verdicts = [
-        {**case.again.verdicts[0], "rule_id": rule["rule_id"], "verdict": "unknown", "t_start_ns": None,
+        {**case.ego_rows.verdicts[0], "rule_id": rule["rule_id"], "verdict": "unknown", "t_start_ns": None,
          "reason_code": f"code_{n}", "reason": f"{rule['title']}: {reason}", "near_miss": False}
         for n, rule in enumerate(rules[1::2])
     ]  # fmt: skip
-    judged = replace(case.again, verdicts=verdicts, findings=[*case.again.findings, *findings])
+    judged = replace(case.ego_rows, verdicts=verdicts, findings=[*case.ego_rows.findings, *findings])
     asked = replace(case.run_options, env=("weather=wet", "light=night", "nation=gb-eng"), map_offset=(1.25, -3.5))
     other_party = judged if all_broken else replace(judged, findings=[])
-    return replace(case, again=judged, other_party=other_party, run_options=asked)
+    return replace(case, ego_rows=judged, other_party=other_party, run_options=asked)
 
 
 @pytest.mark.ci
@@ -155,7 +155,7 @@ def test_what_does_not_fit_is_on_further_pages(case_of: CaseOf, tmp_path: Path) 
 
 def crowded_first_page(case: Case) -> Case:
     """Return a case of a contact shown by the speeds alone, with as much to say of it on page 1 as a log may give."""
-    finding, steps = case.finding, case.again.steps
+    finding, steps = case.finding, case.ego_rows.steps
     saw = pa.array(10.0 + np.abs(np.arange(steps.num_rows) % 20 - 10.0))
     for name, column in (
         ("clearance_m", pa.array(np.full(steps.num_rows, 0.19))),
@@ -177,11 +177,13 @@ def crowded_first_page(case: Case) -> Case:
         n = pa.array([100] * touched.num_rows, touched[name].type)
         touched = touched.set_column(touched.column_names.index(name), touched.schema.field(name), n)
     result = replace(case.result, findings=pa.concat_tables([rows, touched, touched, touched]))
-    again = replace(case.again, steps=steps)
+    ego_rows = replace(case.ego_rows, steps=steps)
     said = QualityFinding(ASSUMED_SIZE_CHECK, "info", f"size by the option {'of the user ' * 5}, not recorded")
     trace = with_quality_finding(case.drive.trace, said)
     again_drive = replace(case.drive, trace=trace, geo=tangent_plane_frame(52.946849, 2.907433))
-    return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
+    return replace(
+        case, result=result, ego_rows=ego_rows, drive=again_drive, finding=replace(finding, row=row, drive=drive)
+    )
 
 
 @pytest.mark.slow

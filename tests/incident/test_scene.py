@@ -40,7 +40,7 @@ def test_actors_are_drawn_where_they_are_at_the_moment(case_of: CaseOf) -> None:
     for actor in between["actors"]:
         ends = [samples[actor["actor_id"], before + t]["x_m"] for t in (0, S // 10)]
         assert actor["x_m"] == pytest.approx(sum(ends) / 2, abs=1e-6)
-    assert scene_at(scene, states, case.finding.start_ns - 1)["actors"] == []
+    assert scene_at(scene, states, case.finding.drive_start_ns - 1)["actors"] == []
     seldom = states.filter(pc.equal(pc.bit_wise_and(pc.divide(states["t_ns"], S), 1), 0))  # the even seconds
     assert scene_at(scene, seldom, 345 * S // 100)["actors"] == []
 
@@ -50,7 +50,7 @@ def test_the_place_of_a_contact_is_that_of_its_first_step(case_of: CaseOf) -> No
     case = case_of("no-collision@collision")
     row, first = case.finding.row, case.finding.row["t_start_ns"]
     deeper = replace(case, finding=replace(case.finding, row={**row, "t_worst_ns": first + S, "x_m": 0.0, "lat": 1.0}))
-    step = next(each for each in case.again.steps.to_pylist() if each["t_ns"] == first)
+    step = next(each for each in case.ego_rows.steps.to_pylist() if each["t_ns"] == first)
     found = place_at_moment(deeper)
     assert (found.t_ns, found.x_m, found.y_m, found.lanelet_id) == (first, step["x_m"], step["y_m"], step["lanelet_id"])
     whole = place_at_moment(case)

@@ -21,11 +21,17 @@ from drivelint import catalogue, cli
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
 from drivelint.errors import UsageError
-from drivelint.incident import IncidentRequest, judge_parties_again, other_matching_drives, sheet_html, write_sheet
+from drivelint.incident import (
+    IncidentRequest,
+    judge_parties_again,
+    other_drives_with_named_finding,
+    sheet_html,
+    write_sheet,
+)
 from drivelint.incident.command import reproducing_commands
 from drivelint.incident.finding import named_finding
-from drivelint.incident.motion import Motion
-from drivelint.incident.sheet import _sudden_contact_sentence, template_values
+from drivelint.incident.motion import MotionOfParties
+from drivelint.incident.sheet import _contact_by_speed_change_sentence, template_values
 from drivelint.incident.sizes import size_source_text
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -282,7 +288,7 @@ def test_the_worst_contact_needs_no_name(folder: Path) -> None:
     assert found.is_contact
     assert found.drive["drive_id"].startswith("collision")
     assert named_finding(result, f"contact@{found.drive['drive_id']}").row == found.row
-    assert other_matching_drives(IncidentRequest("contact", folder)) == []
+    assert other_drives_with_named_finding(IncidentRequest("contact", folder)) == []
     with pytest.raises(UsageError, match="no finding is a contact in safe"):
         named_finding(result, "contact@safe")
 
@@ -382,14 +388,16 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert told["rests"].startswith("It is based on a sudden change of speed: the boxes do not touch at that time")
     assert numbers(told["rests"])[0] == round(at_it, 2)
     assert "sizes are assumed, not recorded" in told["rests"]
-    motion = Motion.of_steps(case.again.steps, case.finding.moment_ns)
+    motion = MotionOfParties.of_steps(case.ego_rows.steps, case.finding.moment_ns)
     unknown = np.full_like(motion.gap, np.nan)
-    assert "whether the boxes touch is not known (no gap is known" in _sudden_contact_sentence(
+    assert "whether the boxes touch is not known (no gap is known" in _contact_by_speed_change_sentence(
         case, replace(motion, gap=unknown)
     )
     one = np.where(motion.t == 0, motion.gap, unknown)
-    assert "whether the boxes touch is not known (least gap" in _sudden_contact_sentence(case, replace(motion, gap=one))
-    assert _sudden_contact_sentence(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
+    assert "whether the boxes touch is not known (least gap" in _contact_by_speed_change_sentence(
+        case, replace(motion, gap=one)
+    )
+    assert _contact_by_speed_change_sentence(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
 
 
 @pytest.mark.ci
@@ -398,8 +406,8 @@ def test_a_rule_that_several_drives_broke_is_said_to_mean_the_worst(folder: Path
     every = load_result(folder).findings.select(["rule_id", "drive_id", "finding_id"]).to_pylist()
     drives = {row["drive_id"] for row in every if row["rule_id"] == "ukhc.r162.safe-distance-ahead"}
     assert len(drives) > 1
-    others = other_matching_drives(IncidentRequest("safe-distance-ahead", folder))
+    others = other_drives_with_named_finding(IncidentRequest("safe-distance-ahead", folder))
     assert len(others) == len(drives) - 1
     assert set(others) < drives
-    assert other_matching_drives(IncidentRequest("safe-distance-ahead@collision", folder)) == []
-    assert other_matching_drives(IncidentRequest(every[0]["finding_id"], folder)) == []
+    assert other_drives_with_named_finding(IncidentRequest("safe-distance-ahead@collision", folder)) == []
+    assert other_drives_with_named_finding(IncidentRequest(every[0]["finding_id"], folder)) == []

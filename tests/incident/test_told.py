@@ -59,7 +59,7 @@ def test_assumed_errors_are_named(text: str) -> None:
 def test_when_the_recording_begins_and_ends(collision: dict[str, Any], case_of: CaseOf, text: str) -> None:
     finding = case_of("no-collision@collision").finding
     before, after = (float(collision["span"][name]) for name in ("before", "after"))
-    moment_s = (finding.moment_ns - finding.start_ns) / 1e9
+    moment_s = (finding.moment_ns - finding.drive_start_ns) / 1e9
     assert before == pytest.approx(min(15.0, moment_s), abs=0.051)
     assert after == pytest.approx(min(7.0, finding.drive["duration_s"] - moment_s), abs=0.051)
     assert f"from {before} s before to {after} s after" in text
@@ -105,7 +105,7 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     case = case_of("no-collision@collision")
     parts = [*collision["conduct"], collision["of_both"]]
     assert [part["reasons"].more for part in parts] == [0, 0, 0]
-    for party, judged in zip(collision["conduct"], (case.again, case.other_party), strict=True):
+    for party, judged in zip(collision["conduct"], (case.ego_rows, case.other_party), strict=True):
         assert isinstance(judged, EgoRows)
         undecided = {row["rule_id"] for row in judged.verdicts if row["verdict"] in {"unknown", "error"}}
         told = " ".join([*party["reasons"].texts, *collision["of_both"]["reasons"].texts])

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.driver import empty_tables
 from drivelint.audit.summary import summary_of_all_drives
 from drivelint.audit.worker import TABLES, receipt_fields
-from drivelint.fleet_report.audit_views import open_packed_audit
+from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
 from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.signature import private_key, signed_envelope
 from tests.audit import fleet
@@ -91,7 +91,7 @@ def follow_rows(pack: Path) -> None:
 
 def follow_tables(pack: Path) -> None:
     """Let the summary and the hashes in `evidence.json` say what the changed tables say."""
-    with open_packed_audit(pack / AUDIT) as (con, _):
+    with open_audit_in_evidence_pack(pack / AUDIT) as (con, _):
         counted = summary_of_all_drives(con, 0)
     change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.file_content()))
     change_evidence(pack, lambda _told: None)

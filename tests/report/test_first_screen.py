@@ -19,7 +19,7 @@ from drivelint.gate import GateInputs
 from drivelint.report import terminal
 from drivelint.report.html import render
 from drivelint.report.html.contact import speeds_before_contact
-from drivelint.report.html.strips import LEFT, RIGHT, strips
+from drivelint.report.html.moment_charts import LEFT, RIGHT, charts_below_plan_view
 from drivelint.report.html.svg import axis_for_deciding_values
 from drivelint.report.outputs import working_folder, write
 from drivelint.result.model import Result
@@ -176,7 +176,7 @@ def test_the_strips_draw_what_the_scene_and_the_course_have(overtakes: Result) -
         s for s in overtakes.scenes.to_pylist() if (s["drive_id"], s["t_ns"]) == (row["drive_id"], row["t_worst_ns"])
     ]
     course = next(c for c in overtakes.courses.to_pylist() if c["finding_id"] == row["finding_id"])
-    drawn = strips(scene, row, course, "reach", overtakes.start_times[row["drive_id"]] or 0)
+    drawn = charts_below_plan_view(scene, row, course, "reach", overtakes.start_times[row["drive_id"]] or 0)
     assert drawn is not None
     assert [s["title"].partition(" ")[0] for s in drawn["strips"]] == ["speed", "acceleration", "offset", "reach"]
     way = scene["actors"][0]["path"]

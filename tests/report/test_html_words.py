@@ -10,7 +10,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from drivelint.report.html.explanations import notes_on_known_logs
+from drivelint.report.html.explanations import notes_on_published_logs
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import drive, finding, result, verdict
@@ -77,10 +77,12 @@ def test_differences_from_the_paper_are_named_on_its_own_logs_only(overtakes: Re
 
 def test_the_logs_of_the_paper_are_the_ones_that_the_differences_are_about() -> None:
     for name in ("safe", "near_miss", "collision"):
-        assert notes_on_known_logs([{"sha256": _hash(shared(f"overtake_case_study/{name}.csv"))}])[0]["title"].endswith(
-            "distances"
-        )
-    assert "Table 2" in notes_on_known_logs([{"sha256": _hash(shared("video_case_study/detections.csv"))}])[0]["title"]
+        assert notes_on_published_logs([{"sha256": _hash(shared(f"overtake_case_study/{name}.csv"))}])[0][
+            "title"
+        ].endswith("distances")
+    assert (
+        "Table 2" in notes_on_published_logs([{"sha256": _hash(shared("video_case_study/detections.csv"))}])[0]["title"]
+    )
 
 
 def _hash(file: Path) -> str:

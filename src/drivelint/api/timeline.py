@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 from drivelint.api.tables import Table
 from drivelint.incident.finding import named_finding
 from drivelint.report.html.environment import page_environment
-from drivelint.report.html.strips import box_distance_line, strips
+from drivelint.report.html.moment_charts import box_distance_line, charts_below_plan_view
 from drivelint.report.html.worst_moment import finding_key
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Timeline(Table):
 def timeline(result: Result, name: str) -> Timeline:
     """Return the timeline of a finding. `name`: as in `CheckResult.timeline`. Errors: `UsageError` for an unknown finding."""
     finding = named_finding(result, name)
-    row, start_ns = finding.row, finding.start_ns
+    row, start_ns = finding.row, finding.drive_start_ns
     at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
     scene = next(iter(_matching_rows(result.scenes, at)), None)
     courses = _matching_rows(result.courses, {"finding_id": row["finding_id"]})
@@ -92,7 +92,7 @@ def timeline(result: Result, name: str) -> Timeline:
             **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _VALUE_COLUMNS},
         }
     )
-    drawn = None if scene is None else strips(scene, row, course, finding.rule["observes"], start_ns)
+    drawn = None if scene is None else charts_below_plan_view(scene, row, course, finding.rule["observes"], start_ns)
     return Timeline(table, drawn, f"{row['rule_id']} in {row['drive_id']}")
 
 

@@ -15,7 +15,7 @@ from enum import Enum
 from itertools import islice
 from typing import TYPE_CHECKING, Final
 
-from drivelint.audit.driver import TASK_DRIVES
+from drivelint.audit.driver import MAX_TASK_DRIVES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -58,7 +58,7 @@ class Claims:
             beat.join()
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
-    def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
+    def claim_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
         """Yield the drives that this audit claims in one pass over `todo`, the drives that have no result yet.
 
         Afterwards, `n_waiting` is the number of drives that other live audits have claimed; later these are done or free. The method never
@@ -66,7 +66,7 @@ class Claims:
         """
         self.n_waiting = self.n_claimed = 0
         left = iter(todo)
-        while some := list(islice(left, TASK_DRIVES)):
+        while some := list(islice(left, MAX_TASK_DRIVES)):
             alive: dict[str, bool] = {}
             for drive in some:
                 claim, owner = self._claim_drive(drive)
@@ -82,8 +82,8 @@ class Claims:
                 self.n_claimed += 1
                 yield drive
 
-    def wait_for_others(self) -> None:
-        """Wait for other audits, after a pass that claimed no drive."""
+    def pause_before_next_pass(self) -> None:
+        """Wait a sixth of the lease for other audits, after a pass that claimed no drive."""
         time.sleep(self._lease_s / 6)
 
     def mark_done(self, drives: Iterable[AuditDrive]) -> None:

@@ -52,8 +52,15 @@ RECEIPT_SCHEMA: Final = pa.schema(
         ("version", pa.int64()),
     ]
 )
-_KEYS: Final = "key, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, ref_id NULLS FIRST, t_start_ns NULLS FIRST"
-_ORDER_OF_TABLE: Final = {"verdicts": _KEYS, "findings": f"{_KEYS}, finding_id", "drives": "key"}
+_VERDICT_SORT_COLUMNS: Final = (
+    "key, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, "
+    "ref_id NULLS FIRST, t_start_ns NULLS FIRST"
+)
+_ORDER_OF_TABLE: Final = {
+    "verdicts": _VERDICT_SORT_COLUMNS,
+    "findings": f"{_VERDICT_SORT_COLUMNS}, finding_id",
+    "drives": "key",
+}
 
 
 def chunk_name(table: str, chunk: str) -> str:

@@ -41,7 +41,7 @@ TABLE_NAMES: Final = ("rules", *TABLES, "receipts")
 DIGEST_KEY: Final = "drivelint.digest"
 """The key in the metadata of a commit for the `digest` of the audit's summary."""
 _STORAGE_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
-_ATTEMPTS: Final = 6
+_MAX_ATTEMPTS: Final = 6
 """Six attempts of 20 s make the two minutes after which a run gives up on a busy store."""
 _COLOUR_CODE: Final = re.compile(r"\x1b\[[0-9;]*m")
 """Colour codes in the error messages of deltalake."""
@@ -53,7 +53,7 @@ class DeltaChange(NamedTuple):
     n_added: int
     n_removed: int
 
-    def text(self, dest: str) -> str:
+    def sentence(self, dest: str) -> str:
         """Return the numbers as a sentence."""
         if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"
@@ -204,11 +204,11 @@ def _run_with_retries(where: str, job: Callable[[], T]) -> T:
     """
     from deltalake.exceptions import DeltaError
 
-    for attempt in range(_ATTEMPTS):
+    for attempt in range(_MAX_ATTEMPTS):
         try:
             return job()
         except (DeltaError, OSError) as error:
-            if attempt + 1 == _ATTEMPTS:
+            if attempt + 1 == _MAX_ATTEMPTS:
                 why = " ".join(_COLOUR_CODE.sub("", str(error)).split())[:300]
                 raise OutputError(f"{where}: the Delta table failed: {why}: run the same command again") from error
     raise AssertionError("unreachable")

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 SUBMITTED_TASKS_PER_WORKER: Final = 4
 """Number of tasks per worker that are submitted and not finished: enough to keep it busy, few enough to fit into memory."""
-TASK_BYTES: Final = 8_000_000
-TASK_DRIVES: Final = 64
-"""A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
+FULL_TASK_BYTES: Final = 8_000_000
+MAX_TASK_DRIVES: Final = 64
+"""A task ends when its logs have `FULL_TASK_BYTES` or it has `MAX_TASK_DRIVES` drives, so short drives are judged together."""
 SMALL_TASK_MAX_DRIVES: Final = 8
 """Number of drives in a task if there are few drives. Results then come early, and all workers have work."""
 MOST_ATTEMPTS: Final = 3
@@ -37,7 +37,7 @@ MOST_ATTEMPTS: Final = 3
 
 def max_drives_per_task(n_drives: int, capacity: int) -> int:
     """Return the largest number of drives that a task may have."""
-    return max(SMALL_TASK_MAX_DRIVES, min(TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
+    return max(SMALL_TASK_MAX_DRIVES, min(MAX_TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
 
 
 def divide_into_tasks(
@@ -47,7 +47,7 @@ def divide_into_tasks(
     settings: JudgeSettings,
     *,
     group_size: int,
-    max_drives: int = TASK_DRIVES,
+    max_drives: int = MAX_TASK_DRIVES,
     n_small: int = 0,
 ) -> Iterator[Task]:
     """Divide drives into tasks. Each group of `group_size` drives starts with its largest logs, so that no long log is left for the end.
@@ -61,7 +61,7 @@ def divide_into_tasks(
         for drive in some:
             part.append(drive)
             most = min(max_drives, SMALL_TASK_MAX_DRIVES) if n_cut < n_small else max_drives
-            if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
+            if len(part) >= most or sum(each.size for each in part) >= FULL_TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part, n_cut = [], n_cut + 1
         if part:
@@ -70,7 +70,7 @@ def divide_into_tasks(
 
 
 @dataclass
-class Driver:
+class TaskDriver:
     """Runs tasks on an executor.
 
     `on_receipt` receives every receipt. `mark_done` receives the drives of a completed task. `between_tasks` is called between tasks.

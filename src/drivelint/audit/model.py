@@ -69,7 +69,7 @@ class Task:
     attempts: int = 0
 
     @property
-    def size(self) -> int:
+    def log_bytes(self) -> int:
         """The size of all logs in bytes."""
         return sum(drive.size for drive in self.drives)
 

@@ -17,9 +17,9 @@ from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, open_database, remove_drives
 from drivelint.audit.driver import (
+    MAX_TASK_DRIVES,
     SUBMITTED_TASKS_PER_WORKER,
-    TASK_DRIVES,
-    Driver,
+    TaskDriver,
     divide_into_tasks,
     max_drives_per_task,
 )
@@ -57,7 +57,7 @@ RULES_FILE: Final = "rules.parquet"
 _LISTED_RECEIPTS: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
-WORKER_BYTES: Final = 500_000_000
+WORKER_BYTES_BESIDE_DATABASE: Final = 500_000_000
 """Bytes that a worker needs besides its database: for the program, its libraries, and the log that it reads."""
 
 
@@ -204,14 +204,14 @@ def _judge_remaining(
     )
     try:
         with claims.keep_alive() if claims else nullcontext():
-            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else TASK_DRIVES
+            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else MAX_TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = max_drives_per_task(n_left, workers.capacity)
-            driver = Driver(
+            driver = TaskDriver(
                 workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
             )
             while True:
-                todo = claims.claimed_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
+                todo = claims.claim_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
                 settings, n_small = _settings_of_workers(request), workers.capacity
                 driver.run(
                     divide_into_tasks(
@@ -221,18 +221,20 @@ def _judge_remaining(
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_claimed:
-                    claims.wait_for_others()
+                    claims.pause_before_next_pass()
     finally:
         workers.close()
     return audit_summary
 
 
 def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
-    """Return the settings with a memory limit of the database that leaves `WORKER_BYTES` to its worker. This changes no result."""
+    """Return the settings with a memory limit of the database that leaves `WORKER_BYTES_BESIDE_DATABASE` to its worker.
+    This changes no result.
+    """
     if request.worker_memory is None:
         return request.settings
     memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
-    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES)
+    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES_BESIDE_DATABASE)
     return replace(request.settings, memory=min(memory, left))
 
 
@@ -298,7 +300,7 @@ def _write_delta(
         return
     progress.stage("writing Delta tables", None)
     progress.note(
-        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).text(dest)
+        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).sentence(dest)
     )
 
 
@@ -322,7 +324,7 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     ):
         if isinstance(results, LocalFolder):
             results.remove_unfinished_files()
-        sealed.require_rows_unchanged(results, out, packed=not _is_sealed(results, out))
+        sealed.require_rows_unchanged(results, out, packed=not _has_intact_seal(results, out))
         results.delete(list(results.names("claims")))
         audit_summary = _pack_and_seal(con, results, Path(downloads), 0, parts.unfinished_parts(results))
         if delta_dest is not None:
@@ -359,7 +361,7 @@ def _create_or_check_settings(request: AuditRequest, results: ResultStore, run_h
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
-        was_unchanged = _is_sealed(results, request.out)
+        was_unchanged = _has_intact_seal(results, request.out)
         sealed.unseal(results)
         results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
@@ -384,7 +386,7 @@ def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
     )
 
 
-def _is_sealed(results: ResultStore, dest: str) -> bool:
+def _has_intact_seal(results: ResultStore, dest: str) -> bool:
     with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
         return sealed.require_listed_files_unchanged(results, Path(downloads), dest)
 

@@ -79,7 +79,7 @@ def expand_manifests(
     logs: list[str] = []
     own: dict[Path, DriveInput] = {}
     for trace in traces:
-        if not _has_existing_log(Path(trace)):
+        if not _is_manifest_of_existing_logs(Path(trace)):
             logs.append(trace)
             continue
         for text in tag_warnings(
@@ -107,7 +107,7 @@ def tag_warnings(names: Sequence[str]) -> Iterator[str]:
             yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
-def _has_existing_log(path: Path) -> bool:
+def _is_manifest_of_existing_logs(path: Path) -> bool:
     if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
     try:

@@ -38,11 +38,11 @@ def write_incident_sheet(request: IncidentRequest) -> None:
 
     If the name fits findings (or near misses) in several drives, print the other drives on stderr.
     """
-    from drivelint.incident import other_matching_drives, write_sheet
+    from drivelint.incident import other_drives_with_named_finding, write_sheet
 
     for path in run_interruptible(lambda: write_sheet(request)):
         typer.echo(terminal_safe_line(str(path)))
-    if others := other_matching_drives(request):
+    if others := other_drives_with_named_finding(request):
         name = request.name
         message = (
             f"{name} also fits {name_list(others)}: the sheet is about the worst; choose another with {name}@DRIVE"

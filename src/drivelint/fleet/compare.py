@@ -47,7 +47,7 @@ class Comparison(NamedTuple):
     drives_base_only: int
     drives_new_only: int
 
-    def counts(self) -> Counter[str]:
+    def counts_by_standing(self) -> Counter[str]:
         """Return standing -> number of findings."""
         found: Counter[str] = Counter()
         for each in self.differences:

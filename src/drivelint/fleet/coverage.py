@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.distinct_logs import counted_egos_sql
 from drivelint.fleet.situations import SITUATIONS, UNAVAILABLE_SITUATIONS, parameters_of_tag, situation_sql
 from drivelint.sql.statements import statement
 
@@ -71,10 +71,10 @@ class Coverage:
 
     def never_occurred(self) -> list[SituationCoverage]:
         """Return the situations in which no drive is known to have been. Situations that are not known for any drive are left out."""
-        untold = set(self.untold())
+        untold = set(self.situations_never_known())
         return [s for s in self.situations if not s.egos and s.value is not None and s.situation not in untold]
 
-    def untold(self) -> list[str]:
+    def situations_never_known(self) -> list[str]:
         """Return the names of situations, such as `weather`, whose value is not known for any drive."""
         told = {each.situation for each in self.situations if each.egos and each.value is not None}
         return sorted({each.situation for each in self.situations} - told)
@@ -85,7 +85,7 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
     `rates(con, by=SITUATION)` returns failures of single rules by situation.
     """
-    parts = {"subject": subject_sql(of)}
+    parts = {"subject": counted_egos_sql(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
     rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
     situations = [each for name, values in SITUATIONS.items() for each in _situation_coverage(con, of, name, values)]
@@ -100,7 +100,8 @@ def _situation_coverage(
     The last row, without a value, counts the drives in which the condition is not known.
     """
     rows: list[tuple[Any, ...]] = con.execute(
-        statement("fleet/situation", of=of, subject=subject_sql(of, value=situation_sql(name))), parameters_of_tag(name)
+        statement("fleet/situation", of=of, subject=counted_egos_sql(of, value=situation_sql(name))),
+        parameters_of_tag(name),
     ).fetchall()
     told = {row[0]: SituationCoverage(name, *row) for row in rows}
     order = dict.fromkeys([*values, *(value for value in told if value is not None)])

@@ -46,8 +46,8 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     return counted
 
 
-def subject_sql(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:
-    """Return the SQL fragment `subject_sql` of a statement: one row per ego that counts, with its distance and time.
+def counted_egos_sql(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:
+    """Return the SQL fragment `subject` of a statement: one row per ego that counts, with its distance and time.
 
     `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`. `value`: the SQL
     expression of a drive's value; default: that of `by`.

@@ -6,7 +6,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.distinct_logs import counted_egos_sql
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class SignalGaps:
 
 def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGaps:
     """Return the signals that the drives lack. `of`: prefix of the views' names. Several results of the same log count once."""
-    egos = subject_sql(of)
+    egos = counted_egos_sql(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
     other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
     return SignalGaps(

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.fleet import intervals
-from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.distinct_logs import counted_egos_sql
 from drivelint.fleet.situations import SITUATIONS, parameters_of_tag, tag_or_situation_sql
 from drivelint.phrases import hint
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
@@ -123,7 +123,7 @@ def rates(
         "least_share": str(LEAST_KEEPING_SHARE),
     }
     parts = {name: statement(f"fleet/{name}", **fragments) for name in ("profiled", "event")}
-    parts["subject"] = subject_sql(of, by, left_out)
+    parts["subject"] = counted_egos_sql(of, by, left_out)
     rows = con.execute(statement("fleet/rates", **fragments, **parts), parameters_of_tag(by))
     names = [column[0] for column in rows.description or ()]
     return [Rate(**dict(zip(names, row, strict=True))) for row in rows.fetchall()]

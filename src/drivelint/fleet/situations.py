@@ -26,16 +26,16 @@ UNAVAILABLE_SITUATIONS: Final = {
 
 def tag_or_situation_sql(by: str | None) -> str:
     """Return the SQL expression for a drive's value of a tag or situation. It reads `d`, the drive, and `ego`, the exposure of an ego."""
-    return "NULL::VARCHAR" if by is None else _measured_situation_sql(_STATEMENT_BY_SITUATION.get(by, "value_of_tag"))
+    return "NULL::VARCHAR" if by is None else _drive_value_sql(_STATEMENT_BY_SITUATION.get(by, "value_of_tag"))
 
 
 def situation_sql(situation: str) -> str:
     """Return such an expression for the coverage, where a tag of the same name does not hide the condition that rules were judged under."""
-    return _measured_situation_sql(_STATEMENT_BY_SITUATION.get(situation, "value_of_condition"))
+    return _drive_value_sql(_STATEMENT_BY_SITUATION.get(situation, "value_of_condition"))
 
 
-def _measured_situation_sql(name: str) -> str:
-    _, _, sql = statement(f"fleet/{name}").partition("\n")
+def _drive_value_sql(statement_name: str) -> str:
+    _, _, sql = statement(f"fleet/{statement_name}").partition("\n")
     return sql.strip()
 
 

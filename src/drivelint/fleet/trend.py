@@ -85,30 +85,30 @@ def trend_p_value(events: Sequence[int], exposures: Sequence[float]) -> float:
         return 1.0
     if n > MAX_EXACT_EVENTS:
         return _normal_p_value(observed, n, shares)
-    chances = _chances_of_sums(shares, n)
+    chances = _chances_of_step_sums(shares, n)
     return float(min(1.0, chances[chances <= chances[observed] * _EQUAL_CHANCE_FACTOR].sum()))
 
 
-def _chances_of_sums(shares: Floats, n: int) -> Floats:
-    """Return the chance of each sum of the steps of `n` events: the n-th power of the polynomial of the shares."""
+def _chances_of_step_sums(shares: Floats, n_events: int) -> Floats:
+    """Return the chance of each sum of the steps of `n_events` events: that power of the polynomial of the shares."""
     power, chances = shares, np.ones(1)
-    while n:
-        if n & 1:
+    while n_events:
+        if n_events & 1:
             chances = np.convolve(chances, power)
-        n >>= 1
-        if n:
+        n_events >>= 1
+        if n_events:
             power = np.convolve(power, power)
     return chances
 
 
-def _normal_p_value(observed: int, n: int, shares: Floats) -> float:
+def _normal_p_value(observed: int, n_events: int, shares: Floats) -> float:
     from scipy.stats import norm
 
     steps = np.arange(len(shares), dtype=float)
     mean = float(steps @ shares)
-    spread = (n * (float(steps**2 @ shares) - mean**2)) ** 0.5
+    spread = (n_events * (float(steps**2 @ shares) - mean**2)) ** 0.5
     # half a step towards the mean, as the sum is a whole number
-    return float(min(1.0, 2 * norm.sf(max(0.0, abs(observed - n * mean) - 0.5) / spread)))
+    return float(min(1.0, 2 * norm.sf(max(0.0, abs(observed - n_events * mean) - 0.5) / spread)))
 
 
 def _p_value_of_rates(rates: Sequence[Rate | None]) -> float | None:

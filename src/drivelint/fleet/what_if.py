@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.errors import UsageError
-from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.distinct_logs import counted_egos_sql
 from drivelint.fleet.situations import parameters_of_tag
 from drivelint.phrases import hint
 from drivelint.sql.statements import statement
@@ -84,7 +84,8 @@ def what_if(
     }
     bound["proven"] = "pass" if rule.sense.startswith(">") else "fail"
     con.execute(
-        statement("fleet/what_if", of=of, subject=subject_sql(of, by), sense=rule.sense), bound | parameters_of_tag(by)
+        statement("fleet/what_if", of=of, subject=counted_egos_sql(of, by), sense=rule.sense),
+        bound | parameters_of_tag(by),
     )
     rows = con.execute(statement("fleet/flips")).fetchall()
     return WhatIf(rule.id, param, value, None, tuple(FlipCount(*row) for row in rows))

@@ -114,11 +114,11 @@ def open_audit_without_logs(
 
 
 @contextmanager
-def open_packed_audit(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
+def open_audit_in_evidence_pack(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
     """Open the audit in an evidence pack. Changed files are not detected here, because `verify` checks them itself. Errors: as
     `open_audits`."""
     with open_database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        yield con, _open_audit(con, str(folder), Path(home) / "new", "", is_packed=True)
+        yield con, _open_audit(con, str(folder), Path(home) / "new", "", is_in_evidence_pack=True)
 
 
 @contextmanager
@@ -131,13 +131,18 @@ def open_two_audits(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnec
 
 
 def _open_audit(
-    con: duckdb.DuckDBPyConnection, dest: str, views_folder: Path, views_prefix: str, *, is_packed: bool = False
+    con: duckdb.DuckDBPyConnection,
+    dest: str,
+    views_folder: Path,
+    views_prefix: str,
+    *,
+    is_in_evidence_pack: bool = False,
 ) -> Audit:
     views_folder.mkdir()
     results = open_store(dest)
     told = read_audit_file(results, dest)
     if told is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
-    if not is_packed:
+    if not is_in_evidence_pack:
         require_audit_unchanged(results, views_folder, dest)
     return Audit(dest, results, told, create_views_of_all_results(con, results, views_folder, views_prefix))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.rates import Rate
     from drivelint.fleet_report.figures import LogarithmicAxis
 
-MAX_VALUES: Final = 12
+MAX_TAG_VALUES: Final = 12
 MAX_RULES: Final = 12
 _SHOWN_PREFIX: Final = "shown_"
 
@@ -52,10 +52,10 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     if tag not in MEASURED_SITUATIONS:  # measured situations have few values, and belong to an ego
         con.execute(
             statement("fleet_report/tag_values", value=tag_or_situation_sql(tag)),
-            {**parameters_of_tag(tag), "most": MAX_VALUES},
+            {**parameters_of_tag(tag), "most": MAX_TAG_VALUES},
         )
         n_values = con.execute("SELECT max(n_values) FROM shown_value").fetchall()[0][0] or 0
-        if n_values > MAX_VALUES:
+        if n_values > MAX_TAG_VALUES:
             con.execute(statement("fleet_report/tag_drives", value=tag_or_situation_sql(tag)), parameters_of_tag(tag))
             for table in ("drives", "verdicts", "findings"):
                 con.execute(
@@ -82,7 +82,7 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
         tag,
         found[:MAX_RULES],
         logarithmic_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
-        max(0, n_values - MAX_VALUES),
+        max(0, n_values - MAX_TAG_VALUES),
         len(left),
         sum(map(_n_findings, left)),
     )

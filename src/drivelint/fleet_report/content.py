@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit.summary import LogList, logs_with_flag
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.fleet.coverage import Coverage, coverage
-from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject_sql
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, counted_egos_sql, create_counted_views
 from drivelint.fleet.missing_signals import SignalGaps, missing_signals
 from drivelint.fleet.rates import Rate, rates
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
@@ -89,7 +89,7 @@ class FleetContent:
         return int(self.totals["drives"] - self.totals["judged"])
 
     @property
-    def sureness(self) -> str:
+    def certainty_sentence(self) -> str:
         """A sentence about contacts and the certainty of findings; '' if there is no finding."""
         if not self.n_findings:
             return ""
@@ -151,7 +151,7 @@ def fleet_content(
         row["tags"] = dict(row["tags"] or ())
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
     found = sorted(rates(con), key=lambda rate: _sort_key_by_severity(rate, rules))
-    (with_findings,) = query_rows(con, "with_findings", subject=subject_sql())
+    (with_findings,) = query_rows(con, "with_findings", subject=counted_egos_sql())
     return FleetContent(
         audit=audit,
         totals=totals,

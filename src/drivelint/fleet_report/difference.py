@@ -79,7 +79,7 @@ class DriveNoMoreJudged(NamedTuple):
     reason: str
 
     @property
-    def line(self) -> str:
+    def log_and_reason(self) -> str:
         """The log and the reason. A reason that already begins with the log stays as it is."""
         return self.reason if self.reason.startswith(self.log) else f"{self.log}: {self.reason}"
 
@@ -138,7 +138,7 @@ class AuditDifference:
         added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
         return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
 
-    def rows_sentence(self, standing: str) -> str:
+    def extra_rows_sentence(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
         return rows_and_findings_sentence(
             self.counts[standing], self.event_counts[standing], has_profile_repeats=self.has_profiles
@@ -166,7 +166,7 @@ class AuditDifference:
         severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
         return [
             (change, test)
-            for change, test in self.tested
+            for change, test in self.tests_by_p_value
             if test.is_significant and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
         ]
 
@@ -181,7 +181,7 @@ class AuditDifference:
         return [each for each in self.rates if each.is_significant]
 
     @property
-    def tested(self) -> list[tuple[RateChange, RateTest]]:
+    def tests_by_p_value(self) -> list[tuple[RateChange, RateTest]]:
         """The tests that could report a difference, sorted by p-value."""
         found = [(change, test) for change in self.rates for test in change.tests]
         return sorted(found, key=lambda each: (each[1].p_value, each[0].rule_id, each[0].profile or "", each[1].per))
@@ -189,7 +189,9 @@ class AuditDifference:
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
         """The tests that report a difference; if these are fewer than `MIN_SHOWN_TESTS`, also the next ones by p-value."""
-        return self.tested[: max(MIN_SHOWN_TESTS, sum(test.is_significant for _, test in self.tested))]
+        return self.tests_by_p_value[
+            : max(MIN_SHOWN_TESTS, sum(test.is_significant for _, test in self.tests_by_p_value))
+        ]
 
 
 def _count_at_or_above(counts: dict[str, int], least_severity: str) -> int:
@@ -210,7 +212,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
         if each.standing != "unchanged":
             causes.setdefault(each.causes, Counter())[each.standing] += each.n
             not_known.update(dict.fromkeys(each.causes_not_known, each.n))
-    standing_counts = comparison.counts()
+    standing_counts = comparison.counts_by_standing()
     return AuditDifference(
         base=base,
         new=new,

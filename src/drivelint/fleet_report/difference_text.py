@@ -106,7 +106,7 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 def changes_sentence(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
-    significant = [each for each in difference.tested if each[1].is_significant]
+    significant = [each for each in difference.tests_by_p_value if each[1].is_significant]
     rate_texts = [f"{rate_name(change)} per {test.per} {ratio_text(test)}" for change, test in significant]
     if len(rate_texts) > _MAX_LISTED_RATES:  # then the nearest test of each rule
         nearest = {

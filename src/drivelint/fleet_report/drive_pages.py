@@ -47,7 +47,7 @@ DEFAULT_N_DRIVES: Final = 100
 """Default number of drives that get a page."""
 MAX_FINDINGS: Final = 200
 """Largest number of findings on a page."""
-MAX_NOTES: Final = 40
+MAX_REASONS_AND_NOTES: Final = 40
 """Largest number of reasons for unknown verdicts on a page, and of notes on the data."""
 _DRIVES_AT_A_TIME: Final = 100
 _SHA256: Final = re.compile(r"[0-9a-f]{64}")
@@ -123,7 +123,7 @@ def pages(
         "rules": rules,
         "severities": SEVERITIES,
         "verdicts": VERDICTS,
-        "max_notes": MAX_NOTES,
+        "max_notes": MAX_REASONS_AND_NOTES,
     }
     for first in range(1, n_pages + 1, _DRIVES_AT_A_TIME):
         for told in _template_values(con, audit, first, first + _DRIVES_AT_A_TIME - 1):

@@ -34,7 +34,7 @@ def rate_with_interval(estimate: Estimate) -> str:
     return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
 
 
-def lower_bound_texts(rate: Rate) -> tuple[str, str] | None:
+def lower_bound_instead_of_zero(rate: Rate) -> tuple[str, str] | None:
     """Return a lower bound and an explanation, to show instead of a rate of 0 that leaves findings out; None: for any other rate.
 
     The drives with these findings were not completely judged, so they do not count for the rate. A rate of 0 would look as if nothing had
@@ -62,7 +62,7 @@ class LogarithmicAxis(NamedTuple):
     high: int
 
     @property
-    def words(self) -> str:
+    def range_text(self) -> str:
         """The first and the last value of the axis as text."""
         return f"{10.0**self.low:g} to {10.0**self.high:g}"
 

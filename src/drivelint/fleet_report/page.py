@@ -152,7 +152,7 @@ def _remedy_with_example(undecided: UndecidedReason) -> str:
 
 _FILTERS: Final[dict[str, Any]] = {
     "figure": figures.figure,
-    "least_rate": figures.lower_bound_texts,
+    "least_rate": figures.lower_bound_instead_of_zero,
     "interval": figures.rate_with_interval,
     "share": figures.percent_with_interval,
     "finding_line": finding_line,

@@ -67,7 +67,7 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
         rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
         ((param, value),) = values.items()
-        version, old_value = _version_and_value(con, rule_id, param)
+        version, old_value = _rule_version_and_param_value(con, rule_id, param)
         rule = rules[rule_id]
         if version != rule.version:
             why = "the rule has changed since the audit: its stored verdicts cannot be used for the present rule"
@@ -89,7 +89,7 @@ def _what_if_or_refusal(
     return what_if(con, rule, param, float(value), tag)
 
 
-def _version_and_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
+def _rule_version_and_param_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
     """Return the version of a rule in the audit, and the value of its parameter there."""
     known = dict(
         con.execute("SELECT rule_id, {'version': rule_version, 'params': params} FROM rules ORDER BY ALL").fetchall()

@@ -11,7 +11,7 @@ from drivelint.fleet import intervals
 from drivelint.fleet.rate_change import ALLOWED_FALSE_CALL_PROBABILITY
 from drivelint.fleet.rates import rates
 from drivelint.fleet.situations import MEASURED_SITUATIONS
-from drivelint.fleet_report.by_tag import MAX_VALUES
+from drivelint.fleet_report.by_tag import MAX_TAG_VALUES
 from drivelint.fleet_report.rows import query_rows
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class WorstTagValue(NamedTuple):
         return self.rates[0]
 
     @property
-    def option(self) -> str:
+    def report_option(self) -> str:
         """The option of `report` that shows all rules by the tag, quoted for a shell."""
         return shlex.join(["--by", self.tag])
 
@@ -74,7 +74,9 @@ def worst_tag_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -
     ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
     all_tags = query_rows(con, "tags")
     compared_tags = [
-        row["tag"] for row in all_tags if 1 < row["n_values"] <= MAX_VALUES and row["tag"] not in MEASURED_SITUATIONS
+        row["tag"]
+        for row in all_tags
+        if 1 < row["n_values"] <= MAX_TAG_VALUES and row["tag"] not in MEASURED_SITUATIONS
     ]
     if not ids or not compared_tags:
         return None

@@ -70,7 +70,7 @@ def write_sheet(request: IncidentRequest) -> list[Path]:
     return [request.folder / FOLDER / name for name in contents]
 
 
-def other_matching_drives(request: IncidentRequest) -> list[str]:
+def other_drives_with_named_finding(request: IncidentRequest) -> list[str]:
     """Return the other drives with findings that match the name; they exist only if the name is a rule, or `contact`, without a drive.
 
     If no drive has such a finding, return the other drives with near misses.
@@ -120,15 +120,15 @@ def judge_parties_again(request: IncidentRequest, run_options: RunRequest | None
         map_=request.map,
         map_sha256=finding.drive["map_sha256"],
     )
-    again = judge.judge(drive, ego, other)
+    ego_rows = judge.judge(drive, ego, other)
     if finding.is_near_miss:
-        finding = near_miss_with_closing_speed(finding, again.steps)
+        finding = near_miss_with_closing_speed(finding, ego_rows.steps)
     return Case(
         result,
         run_options,
         finding,
         drive,
-        again,
+        ego_rows,
         _other_party_rows_or_reason(request, run_options, result, finding, judge),
         source,
     )

@@ -20,7 +20,7 @@ PARTY_LETTERS: Final = ("A", "B")
 class Case:
     """A finding, its run, and the results of judging the parties again.
 
-    `again`: the result for the ego; `other_party`: the result for the second party, or a sentence why it was not judged; None: there is
+    `ego_rows`: the result for the ego; `other_party`: the result for the second party, or a sentence why it was not judged; None: there is
     no second party.
     """
 
@@ -28,6 +28,6 @@ class Case:
     run_options: RunRequest
     finding: NamedFinding
     drive: Drive
-    again: EgoRows
+    ego_rows: EgoRows
     other_party: EgoRows | str | None
     source: str

@@ -84,7 +84,7 @@ def _clips_to_try(finding: NamedFinding) -> Iterator[tuple[float | None, float |
     """Yield the clips to try, each longer than the one before, with the seconds before and after the finding; None: the whole log."""
     name = f"{Path(finding.drive['file_name']).stem}-clip-{finding.row['finding_id'][:8]}"
     start, end = finding.row["t_start_ns"], finding.row["t_end_ns"]
-    first = finding.start_ns
+    first = finding.drive_start_ns
     last = first + round((finding.drive["duration_s"] or 0.0) * _NS_PER_S)
     for before_s, after_s in TRIED_PADDINGS_S:
         clip = Clip(name, max(start - before_s * _NS_PER_S, first), min(end + after_s * _NS_PER_S, last))
@@ -110,7 +110,7 @@ def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, j
 
 def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
     """Return the span of the clip in one sentence."""
-    from_s, to_s = ((t_ns - finding.start_ns) / _NS_PER_S for t_ns in (clip.from_ns, clip.to_ns))
+    from_s, to_s = ((t_ns - finding.drive_start_ns) / _NS_PER_S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row
     if before_s is None:
         span = "the whole log, because no shorter part that was tried gives the finding"

@@ -11,7 +11,7 @@ from drivelint.incident.words import speed_text, text_with_minus_signs
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
-    from drivelint.incident.motion import Motion
+    from drivelint.incident.motion import MotionOfParties
 
 IMPACT_WINDOW_S: Final = 0.3
 """The time after the beginning of an impact in which crash recorders record the greatest change of velocity (49 CFR 563.7)."""
@@ -33,7 +33,7 @@ class DeltaV(NamedTuple):
     is_least: bool
 
 
-def greatest_delta_v(motion: Motion, party: int, step_before: int) -> DeltaV | None:
+def greatest_delta_v(motion: MotionOfParties, party: int, step_before: int) -> DeltaV | None:
     """Return the greatest change of a party's velocity vector since the step `step_before`, up to 0.3 s after the moment.
 
     The step after `step_before` counts even if it is later than that. None: a velocity in that time is not known or not recorded.
@@ -49,7 +49,7 @@ def greatest_delta_v(motion: Motion, party: int, step_before: int) -> DeltaV | N
     return DeltaV(float(change[i]), float(t[window[i]]), bool(t[-1] + motion.step_s <= IMPACT_WINDOW_S + 1e-9))
 
 
-def delta_v_text(motion: Motion, party: int, step_before: int | None, trace: Trace, actor_id: str) -> str:
+def delta_v_text(motion: MotionOfParties, party: int, step_before: int | None, trace: Trace, actor_id: str) -> str:
     """Return the change of velocity in a contact with its interval in words, or why it is not known; '' if there is no contact."""
     if step_before is None:
         return ""
@@ -72,7 +72,7 @@ def delta_v_text(motion: Motion, party: int, step_before: int | None, trace: Tra
     )
 
 
-def _speeds_and_course_text(motion: Motion, party: int, step_before: int, velocity_change: DeltaV) -> str:
+def _speeds_and_course_text(motion: MotionOfParties, party: int, step_before: int, velocity_change: DeltaV) -> str:
     """Return speeds and change of direction in words; '' if the direction did not change.
 
     The text mentions steering if direction changed more than speed.

@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.incident.motion import Motion
+from drivelint.incident.motion import MotionOfParties
 from drivelint.phrases import name_list
 from drivelint.report.worst_first import is_contact, worst_first
 
@@ -52,7 +52,7 @@ class NamedFinding:
         return int(self.row["t_start_ns" if self.is_contact else "t_worst_ns"])
 
     @property
-    def start_ns(self) -> int:
+    def drive_start_ns(self) -> int:
         """The drive's first time stamp."""
         return self.drive["t_start_ns"] or 0
 
@@ -106,8 +106,8 @@ def near_misses(result: Result) -> list[Row]:
 
 def near_miss_with_closing_speed(finding: NamedFinding, steps: pa.Table) -> NamedFinding:
     """Return a near miss with the closing speed at its moment. `steps`: rows of `queries/incident/step.sql`."""
-    motion = Motion.of_steps(steps, finding.moment_ns)
-    at = motion.at(0.0)
+    motion = MotionOfParties.of_steps(steps, finding.moment_ns)
+    at = motion.nearest_step(0.0)
     closing_mps = math.nan if at is None else float(motion.closing[at])
     return replace(finding, row={**finding.row, "closing_mps": None if math.isnan(closing_mps) else closing_mps})
 

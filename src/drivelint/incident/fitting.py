@@ -29,7 +29,7 @@ _CHARACTERS_OF_A_FURTHER_PAGE: Final = 8400
 """The characters that a page after page 2 has space for."""
 _CHARACTERS_OF_A_HEADING: Final = 110
 """The characters that fit into the space of a heading on such a page."""
-_CHARACTERS_PER_SECOND_ROW: Final = 120
+_CHARACTERS_PER_ROW_OF_SECONDS: Final = 120
 """The characters that fit into the space of one row of the table of seconds."""
 _SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
@@ -138,14 +138,14 @@ def extract_shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def fit_conduct_lists(
-    parties: Sequence[dict[str, Any]], unused_second_rows: int, used_characters: int
+    parties: Sequence[dict[str, Any]], unused_rows_of_seconds: int, used_characters: int
 ) -> list[list[ContinuedTexts]]:
     """Cut the lists about both parties so that they fit into two columns with a common limit of characters, and return further pages.
 
     Free space goes first to the broken rules, then to the reasons, until all are printed, then to the titles of rules in the reasons. If
     other lines need space, the lists are shortened, the list of broken rules last. If a broken rule has no space, all texts without space
     are on the further pages.
-    `unused_second_rows`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
+    `unused_rows_of_seconds`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
     """
     lists = [
         (told, name, list(told[name])) for name in _RESERVED_CHARACTERS_BY_PART for told in parties if name in told
@@ -158,7 +158,7 @@ def fit_conduct_lists(
     ]
     spare = (
         _CHARACTERS_OF_ALL_PARTS
-        + _CHARACTERS_PER_SECOND_ROW * unused_second_rows
+        + _CHARACTERS_PER_ROW_OF_SECONDS * unused_rows_of_seconds
         - used_characters
         - sum(room for *_, room in parts)
     )

@@ -68,14 +68,16 @@ class Judge:
         """Judge a drive with one ego. `errors`: the assumed errors of the copies that show how sure findings are; None: no copies."""
         steps: list[pa.Table] = []
 
-        def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
+        def read_ego_steps(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
             values = {"ego_id": ego_id, "object_id": object_id}
             steps.append(con.execute(statement("incident/step"), values).to_arrow_table())
 
         with store.workspace(self.memory) as con:
             store.insert(con, "profile", self.profiles)
             memory = MemoryLimit(con, self.memory)
-            session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory, errors=errors)
+            session = JudgingSession(
+                con, self.rules, self.params, None, observers=[read_ego_steps], memory=memory, errors=errors
+            )
             session.judge([drive])
             session.judge_copies()
             session.close()

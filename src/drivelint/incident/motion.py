@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SECONDS_BEFORE_MOMENT: Final = 15
 SECONDS_AFTER_MOMENT: Final = 2
 """The table runs from 15 s before the moment to 2 s after it."""
-MOST_TABLE_ROWS: Final = SECONDS_BEFORE_MOMENT + SECONDS_AFTER_MOMENT + 2
+MOST_ROWS_OF_SECONDS_TABLE: Final = SECONDS_BEFORE_MOMENT + SECONDS_AFTER_MOMENT + 2
 """The greatest number of rows of the table: its seconds, the moment, and the last step before a contact."""
 LEAST_SLOWING_MPS2: Final = 1.0
 """A vehicle whose mean deceleration over half a second is less may be coasting."""
@@ -33,7 +33,7 @@ _MOST_MERGED_BREAK_S: Final = 0.5
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionOfParties:
     """The steps of a drive as arrays; in each pair the ego's comes first, then the other party's. NaN: not known.
 
     `t`: seconds from the moment; `velocity`: along x and y, shape (2, n), in m/s; `backwards`: moves against its heading;
@@ -54,7 +54,7 @@ class Motion:
     out_since: Floats
 
     @classmethod
-    def of_steps(cls, steps: pa.Table, moment_ns: int) -> Motion:
+    def of_steps(cls, steps: pa.Table, moment_ns: int) -> MotionOfParties:
         """Return the motion from rows of `queries/incident/step.sql`."""
         c = {
             name: floats(steps[name])
@@ -88,52 +88,52 @@ class Motion:
         """The median time between two steps in seconds."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.0
 
-    def at(self, t: float) -> int | None:
+    def nearest_step(self, t: float) -> int | None:
         """Return the step nearest to a time; None if it is more than half a usual step, or half a second, away."""
         i = int(np.abs(self.t - t).argmin())
         return i if abs(self.t[i] - t) <= min(self.step_s / 2, 0.5) + 1e-6 else None
 
-    def last_before(self, t: float) -> int | None:
+    def last_step_before(self, t: float) -> int | None:
         """Return the last step before a time; None if there is none."""
         i = int(np.searchsorted(self.t, t - 1e-9)) - 1
         return i if i >= 0 else None
 
-    def last_apart_before(self, t: float) -> int | None:
+    def last_step_apart_before(self, t: float) -> int | None:
         """Return the last step before a time at which the boxes do not overlap, or their gap is not known.
 
         Return the last step before the time if the boxes always overlap.
         """
-        last = self.last_before(t)
+        last = self.last_step_before(t)
         apart = np.flatnonzero(~(self.gap[: (last or 0) + 1] <= 0)).tolist()
         return last if last is None or not apart else int(apart[-1])
 
-    def signed_speed(self, party: int) -> Floats:
+    def signed_speeds_mps(self, party: int) -> Floats:
         """Return the speed of a party in m/s, negative while the party moves backwards."""
         return np.where(self.backwards[party], -self.speed[party], self.speed[party])
 
-    def acceleration(self, party: int, i: int, over_s: float, v: Floats | None = None) -> float:
+    def mean_acceleration_mps2(self, party: int, step_no: int, over_s: float, v: Floats | None = None) -> float:
         """Return the mean rate of change of `v` in m/s2 over `over_s` before a step; NaN if `v` is not known over all of that time.
 
         `v`: speeds in m/s at the steps; None: the party's speed without sign.
         """
         t, v = self.t, self.speed[party] if v is None else v
-        start = t[i] - over_s
-        within = (t >= start - 1.5 * self.step_s) & (t <= t[i])
+        start = t[step_no] - over_s
+        within = (t >= start - 1.5 * self.step_s) & (t <= t[step_no])
         if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_PERIOD_S).any():
             return float("nan")
-        return float((v[i] - np.interp(start, t, v)) / over_s)
+        return float((v[step_no] - np.interp(start, t, v)) / over_s)
 
-    def hardest_braking(self, party: int, i: int) -> float:
+    def hardest_recent_braking_mps2(self, party: int, step_no: int) -> float:
         """Return the greatest deceleration (mean of half a second) that ends in the second before a step; 0: none; NaN: not known."""
-        ends = np.flatnonzero((self.t > self.t[i] - 1.0 + 1e-9) & (self.t <= self.t[i] + 1e-9)).tolist()
+        ends = np.flatnonzero((self.t > self.t[step_no] - 1.0 + 1e-9) & (self.t <= self.t[step_no] + 1e-9)).tolist()
         means = [
-            self.acceleration(party, end, _MEAN_PERIOD_S)
+            self.mean_acceleration_mps2(party, end, _MEAN_PERIOD_S)
             for end in ends
-            if not self.is_sudden(party, end, _MEAN_PERIOD_S)
+            if not self.has_sudden_speed_loss(party, end, _MEAN_PERIOD_S)
         ]
         return float(np.maximum(0.0, -np.min(means))) if means else math.nan
 
-    def sudden(self, party: int) -> Mask:
+    def sudden_speed_loss_mask(self, party: int) -> Mask:
         """Return a mask of the steps at which a party has lost speed since the previous step faster than tyres can brake."""
         lost = -np.diff(self.speed[party], prepend=self.speed[party][:1])
         found: Mask = (lost >= _LEAST_IMPACT_LOSS_MPS) & (
@@ -141,10 +141,10 @@ class Motion:
         )
         return found
 
-    def is_sudden(self, party: int, i: int, over_s: float) -> bool:
+    def has_sudden_speed_loss(self, party: int, step_no: int, over_s: float) -> bool:
         """Return whether a party lost speed faster than tyres can brake in the `over_s` before a step."""
-        within = (self.t > self.t[i] - over_s + 1e-9) & (self.t <= self.t[i])
-        return bool(self.sudden(party)[within].any())
+        within = (self.t > self.t[step_no] - over_s + 1e-9) & (self.t <= self.t[step_no])
+        return bool(self.sudden_speed_loss_mask(party)[within].any())
 
 
 def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
@@ -155,12 +155,12 @@ def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
     return found
 
 
-def is_slowing_known(motion: Motion, party: int, until_s: float) -> bool:
+def is_slowing_known(motion: MotionOfParties, party: int, until_s: float) -> bool:
     """Return whether a party's deceleration is known at all recorded steps of the 15 s before `until_s`."""
     t = motion.t
     begin = max(float(t[0]), until_s - SECONDS_BEFORE_MOMENT)
     steps = np.flatnonzero((t >= begin + _MEAN_PERIOD_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
-    return bool(steps) and not any(np.isnan(motion.acceleration(party, i, _MEAN_PERIOD_S)) for i in steps)
+    return bool(steps) and not any(np.isnan(motion.mean_acceleration_mps2(party, i, _MEAN_PERIOD_S)) for i in steps)
 
 
 class SlowingPeriod(NamedTuple):
@@ -182,14 +182,16 @@ class SlowingPeriod(NamedTuple):
         return (self.from_mps - self.to_mps) / max(self.end_s - self.start_s, 1e-9)
 
 
-def slowing_periods(motion: Motion, party: int, until_s: float) -> list[SlowingPeriod]:
+def slowing_periods(motion: MotionOfParties, party: int, until_s: float) -> list[SlowingPeriod]:
     """Return the periods in which a party slows by `LEAST_SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
     t, v = motion.t, motion.speed[party]
     steps = np.flatnonzero((t >= until_s - SECONDS_BEFORE_MOMENT) & (t <= until_s + 1e-9))
-    mean = {int(i): motion.acceleration(party, int(i), _MEAN_PERIOD_S) for i in steps}
-    sudden = motion.sudden(party)
+    mean = {int(i): motion.mean_acceleration_mps2(party, int(i), _MEAN_PERIOD_S) for i in steps}
+    sudden = motion.sudden_speed_loss_mask(party)
     hard = [
-        i for i in steps.tolist() if mean[i] <= -LEAST_SLOWING_MPS2 and not motion.is_sudden(party, i, _MEAN_PERIOD_S)
+        i
+        for i in steps.tolist()
+        if mean[i] <= -LEAST_SLOWING_MPS2 and not motion.has_sudden_speed_loss(party, i, _MEAN_PERIOD_S)
     ]
     found = [
         SlowingPeriod(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
@@ -214,7 +216,7 @@ def slowing_periods(motion: Motion, party: int, until_s: float) -> list[SlowingP
     return sorted(found)
 
 
-def rows_per_second(motion: Motion, last_before_contact_s: float | None) -> list[dict[str, Any]]:
+def rows_of_seconds_table(motion: MotionOfParties, last_before_contact_s: float | None) -> list[dict[str, Any]]:
     """Return a row per full second from 15 s before to 2 s after the moment, and a row of the last step before a contact."""
     return [
         _row_at_step(motion, i, t, last_before_contact_s)
@@ -222,30 +224,34 @@ def rows_per_second(motion: Motion, last_before_contact_s: float | None) -> list
     ]
 
 
-def _steps_and_times_of_table(motion: Motion, last_before_contact_s: float | None) -> Iterator[tuple[int, float]]:
+def _steps_and_times_of_table(
+    motion: MotionOfParties, last_before_contact_s: float | None
+) -> Iterator[tuple[int, float]]:
     times = sorted(
         {float(t) for t in range(-SECONDS_BEFORE_MOMENT, SECONDS_AFTER_MOMENT + 1)}
         | ({last_before_contact_s} if last_before_contact_s is not None else set())
     )
     for t in times:
-        if (i := motion.at(t)) is not None:
+        if (i := motion.nearest_step(t)) is not None:
             yield i, t
 
 
-def _row_at_step(motion: Motion, i: int, t: float, last_before_contact_s: float | None) -> dict[str, Any]:
-    signed = [motion.signed_speed(party) for party in (0, 1)]
+def _row_at_step(
+    motion: MotionOfParties, step_no: int, t: float, last_before_contact_s: float | None
+) -> dict[str, Any]:
+    signed = [motion.signed_speeds_mps(party) for party in (0, 1)]
     return {
-        "i": i,
+        "i": step_no,
         "t": t,
         "last_before": t == last_before_contact_s,
         "moment": t == 0,
-        "speed": [float(v[i]) for v in signed],
-        "accel": [motion.acceleration(party, i, 1.0, signed[party]) for party in (0, 1)],
-        "hardest": [motion.hardest_braking(party, i) for party in (0, 1)],
-        "impact": [motion.is_sudden(party, i, 1.0) for party in (0, 1)],
-        "offset": [float(v[i]) for v in motion.lane_offset],
-        "gap": float(motion.gap[i]),
-        "closing": float(motion.closing[i]),
+        "speed": [float(v[step_no]) for v in signed],
+        "accel": [motion.mean_acceleration_mps2(party, step_no, 1.0, signed[party]) for party in (0, 1)],
+        "hardest": [motion.hardest_recent_braking_mps2(party, step_no) for party in (0, 1)],
+        "impact": [motion.has_sudden_speed_loss(party, step_no, 1.0) for party in (0, 1)],
+        "offset": [float(v[step_no]) for v in motion.lane_offset],
+        "gap": float(motion.gap[step_no]),
+        "closing": float(motion.closing[step_no]),
     }
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.incident.case import Case
-    from drivelint.incident.motion import Motion, SlowingPeriod
+    from drivelint.incident.motion import MotionOfParties, SlowingPeriod
     from drivelint.result.text import Row
 
 _STANDING_MPS: Final = 0.5
@@ -32,7 +32,7 @@ _LANE_TEXTS: Final = {True: "centre in a lane of its direction", False: "centre 
 
 def party_values(
     case: Case,
-    motion: Motion,
+    motion: MotionOfParties,
     party_no: int,
     step_no: int | None,
     last_before_contact_s: float | None,
@@ -127,17 +127,17 @@ def _lane_text(case: Case, party_no: int, step_no: int | None) -> str:
 
     `step_no`: None, if that moment was not examined. The words also say when the party left its lane.
     """
-    judged = (case.again, case.other_party)[party_no]
+    judged = (case.ego_rows, case.other_party)[party_no]
     if step_no is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
         return "not examined"
-    t_ns = case.again.steps["t_ns"][step_no].as_py()
+    t_ns = case.ego_rows.steps["t_ns"][step_no].as_py()
     i = int(np.searchsorted(judged.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1
     if i < 0:
         return "not known"
     step = judged.steps.slice(i, 1).to_pylist()[0]
     said: str = _LANE_TEXTS.get(step["with_traffic"], "lane not known")
     if step["out_since_ns"] is not None:
-        said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.start_ns)}"
+        said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.drive_start_ns)}"
         said += " and is not completely back" if step["with_traffic"] else ""
     return said
 
@@ -146,7 +146,7 @@ def overtaking_text(case: Case, step_no: int | None) -> str:
     """Return in words which vehicles A was overtaking at step `step_no`, and whether A was in the oncoming lane; '' for no vehicle."""
     if step_no is None:
         return ""
-    t_ns, row = case.again.steps["t_ns"][step_no].as_py(), case.finding.row
+    t_ns, row = case.ego_rows.steps["t_ns"][step_no].as_py(), case.finding.row
     passed = sorted(
         {
             each["vbp_id"]
@@ -155,19 +155,19 @@ def overtaking_text(case: Case, step_no: int | None) -> str:
             and each["t0_ns"] <= t_ns <= each["t_end_ns"]
         }
     )
-    against = case.again.steps["with_traffic"][step_no].as_py() is False
+    against = case.ego_rows.steps["with_traffic"][step_no].as_py() is False
     return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
 
 
-def sheet_title(case: Case, motion: Motion, step_no: int | None, *, is_only_possible: bool) -> str:
+def sheet_title(case: Case, motion: MotionOfParties, step_no: int | None, *, is_only_possible: bool) -> str:
     """Return the title of the sheet: a collision of A and B, the broken rule, or the rule that was nearly broken."""
     finding, row = case.finding, case.finding.row
-    when = seconds(finding.moment_ns, finding.start_ns)
+    when = seconds(finding.moment_ns, finding.drive_start_ns)
     if finding.is_near_miss:
         return f"Near miss at {when}: \u201c{finding.rule['title']}\u201d was kept by {amount_text(row['margin'], row['unit'])}"
     if not finding.is_contact or len(finding.parties) < 2:
         return f"{breach_title(finding.rule)}{', possibly' if is_only_possible else ''}, at {when}"
-    oncoming = step_no is not None and case.again.steps["with_traffic"][step_no].as_py() is False
+    oncoming = step_no is not None and case.ego_rows.steps["with_traffic"][step_no].as_py() is False
     return collision_title(
         motion,
         step_no,

@@ -42,7 +42,7 @@ class Place(NamedTuple):
 def place_at_moment(case: Case) -> Place:
     """Return A's place at the moment of the finding; if that is not known, its place at the worst step."""
     row, moment_ns = case.finding.row, case.finding.moment_ns
-    steps = case.again.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
+    steps = case.ego_rows.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
     at = next((step for step in steps if step["t_ns"] == moment_ns), None)
     is_in_row = row["t_worst_ns"] == moment_ns and not case.finding.is_near_miss  # a verdict has no degrees
     if is_in_row or at is None or at["x_m"] is None or at["y_m"] is None:

@@ -61,7 +61,7 @@ def plan_view_at_moment(case: Case) -> dict[str, Any]:
     finding = case.finding
     at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
     scene, *_ = [*_rows_at_moment(case.result.scenes, at), None]
-    drawn_at = seconds(finding.moment_ns, finding.start_ns)
+    drawn_at = seconds(finding.moment_ns, finding.drive_start_ns)
     if scene is None:
         return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
     drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)

@@ -14,6 +14,7 @@ from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import PARTY_LETTERS
+from drivelint.incident.charts import charts_over_time, gap_and_finding_courses
 from drivelint.incident.command import reproducing_commands, rule_ids_named_by_user
 from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name
 from drivelint.incident.delta_v import IMPACT_WINDOW_S
@@ -27,7 +28,13 @@ from drivelint.incident.fitting import (
     is_first_page_full,
 )
 from drivelint.incident.judge import matching_finding
-from drivelint.incident.motion import MOST_TABLE_ROWS, SECONDS_BEFORE_MOMENT, Motion, rows_per_second, slowing_periods
+from drivelint.incident.motion import (
+    MOST_ROWS_OF_SECONDS_TABLE,
+    SECONDS_BEFORE_MOMENT,
+    MotionOfParties,
+    rows_of_seconds_table,
+    slowing_periods,
+)
 from drivelint.incident.parties import overtaking_text, party_kinds, party_values, relative_speed_text, sheet_title
 from drivelint.incident.place import (
     coordinates_source_text,
@@ -41,7 +48,6 @@ from drivelint.incident.place import (
 from drivelint.incident.record import elements_by_presence
 from drivelint.incident.scene import plan_view_at_moment
 from drivelint.incident.sizes import size_source_text
-from drivelint.incident.strips import charts_over_time, gap_and_finding_courses
 from drivelint.incident.words import (
     amount_text,
     box_overlap_text,
@@ -72,7 +78,7 @@ _LONGEST_SENTENCE_CHARACTERS: Final = 330
 _NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
-_RECORDS_CHARACTERS: Final = 1050
+_MISSING_RECORDS_CHARACTERS: Final = 1050
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_LISTED_CONTACTS: Final = 2
 
@@ -80,13 +86,13 @@ _MOST_LISTED_CONTACTS: Final = 2
 def template_values(case: Case) -> dict[str, Any]:
     """Return all values of the template."""
     finding, row = case.finding, case.finding.row
-    motion = Motion.of_steps(case.again.steps, finding.moment_ns)
-    before = motion.last_apart_before(0.0) if finding.is_contact else None
-    at = motion.at(0.0) if before is None else before
+    motion = MotionOfParties.of_steps(case.ego_rows.steps, finding.moment_ns)
+    before = motion.last_step_apart_before(0.0) if finding.is_contact else None
+    at = motion.nearest_step(0.0) if before is None else before
     before_s = None if before is None else float(motion.t[before])
     slowed = [slowing_periods(motion, no, before_s or 0.0) for no in range(len(finding.parties))]
-    offset_s = (finding.moment_ns - finding.start_ns) / 1e9
-    rows = rows_per_second(motion, before_s)
+    offset_s = (finding.moment_ns - finding.drive_start_ns) / 1e9
+    rows = rows_of_seconds_table(motion, before_s)
     span, where = _conduct_span_ns(finding), place_at_moment(case)
     told = {
         "row": row,
@@ -106,14 +112,14 @@ def template_values(case: Case) -> dict[str, Any]:
         "cut_from": _clip_source_texts(case),
         "recorded": f"{_signed_number_text(max(float(motion.t[0]), -SECONDS_BEFORE_MOMENT))} s to {_signed_number_text(before_s or 0.0)} s",
         "profile": profile_text(row["profile"]),
-        "when": seconds(finding.moment_ns, finding.start_ns),
-        "worst": seconds(row["t_worst_ns"], finding.start_ns),
+        "when": seconds(finding.moment_ns, finding.drive_start_ns),
+        "worst": seconds(row["t_worst_ns"], finding.drive_start_ns),
         "stretch": None
         if row["t_start_ns"] == row["t_end_ns"]
-        else [seconds(row[key], finding.start_ns) for key in ("t_start_ns", "t_end_ns")],
+        else [seconds(row[key], finding.drive_start_ns) for key in ("t_start_ns", "t_end_ns")],
         "utc": utc_at(finding.moment_ns, finding.drive),
         "place": where,
-        "placed": seconds(where.t_ns, finding.start_ns),
+        "placed": seconds(where.t_ns, finding.drive_start_ns),
         "road_id": road_id_of_lanelet(case, where.lanelet_id),
         "coordinates": coordinates_source_text(case),
         "geo_source": (source := geo_source(case)),
@@ -139,7 +145,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "overlap": box_overlap_text(row, finding.rule),
         **plan_view_at_moment(case),
         "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
-        "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
+        "pictured_at": seconds(row["t_worst_ns"], finding.drive_start_ns),
         "strips": charts_over_time(motion, _party_names(finding), *gap_and_finding_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
@@ -152,10 +158,10 @@ def template_values(case: Case) -> dict[str, Any]:
         "errors": MeasurementErrors().standard_deviations_text,
         "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
         "sure": _certainty_values(case),
-        "rests": _sudden_contact_sentence(case, motion),
+        "rests": _contact_by_speed_change_sentence(case, motion),
         "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _fitted_log_warnings(case),
-        "again": matching_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
+        "again": matching_finding(case.ego_rows.verdicts if finding.is_near_miss else case.ego_rows.findings, row),
         "source": case.source,
         "commands": reproducing_commands(
             case.run_options,
@@ -171,9 +177,9 @@ def template_values(case: Case) -> dict[str, Any]:
     told["crowded"] = is_first_page_full(told)
     taken = (
         characters_lost_to_hash_lines([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
-        + _RECORDS_CHARACTERS * told["crowded"]
+        + _MISSING_RECORDS_CHARACTERS * told["crowded"]
     )
-    return {**told, **_conduct_values(case, span, MOST_TABLE_ROWS - len(rows), taken)}
+    return {**told, **_conduct_values(case, span, MOST_ROWS_OF_SECONDS_TABLE - len(rows), taken)}
 
 
 def number_or_dash(value: float | None, digits: int = 2) -> str:
@@ -218,13 +224,13 @@ def _metres_text(value: float) -> str:
     return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
-def _least_gap_text(motion: Motion, finding: NamedFinding) -> str | None:
+def _least_gap_text(motion: MotionOfParties, finding: NamedFinding) -> str | None:
     """Return the least gap between the two parties in the whole drive, in words; None if no gap is known."""
     known = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
     if not known:
         return None
     i = min(known, key=lambda i: (motion.gap[i], i))
-    at = (float(motion.t[i]) * 1e9 + finding.moment_ns - finding.start_ns) / 1e9
+    at = (float(motion.t[i]) * 1e9 + finding.moment_ns - finding.drive_start_ns) / 1e9
     deep = f"boxes overlap by {-motion.gap[i]:.2f} m" if motion.gap[i] < 0 else f"{motion.gap[i]:.2f} m"
     return f"{deep} at {at:.2f} s"
 
@@ -256,7 +262,7 @@ def _other_contact_texts(case: Case) -> list[str]:
     told = []
     for row in _other_contacts_of_ego(case):
         sure = f"; {certainty_text(row)}" if row["n_copies"] is not None else ""
-        at = seconds(row["t_start_ns"], case.finding.start_ns)
+        at = seconds(row["t_start_ns"], case.finding.drive_start_ns)
         both = _is_between_parties(case, row)
         if not both or row["rule_id"] != case.finding.row["rule_id"]:
             other = row["object_id"] if row["ego_id"] == case.finding.row["ego_id"] else row["ego_id"]
@@ -286,10 +292,10 @@ def _clip_source_texts(case: Case) -> list[str]:
 
 def _recording_time_texts(finding: NamedFinding) -> dict[str, str]:
     """Return the recording's length, and its start and end in seconds from the moment."""
-    end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
-    from_s, to_s = ((t_ns - finding.moment_ns) / 1e9 for t_ns in (finding.start_ns, end_ns))
+    end_ns = finding.drive_start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
+    from_s, to_s = ((t_ns - finding.moment_ns) / 1e9 for t_ns in (finding.drive_start_ns, end_ns))
     return {
-        "length": seconds(end_ns, finding.start_ns),
+        "length": seconds(end_ns, finding.drive_start_ns),
         "from": _signed_number_text(from_s),
         "to": _signed_number_text(to_s),
     }
@@ -297,13 +303,13 @@ def _recording_time_texts(finding: NamedFinding) -> dict[str, str]:
 
 def _conduct_span_ns(finding: NamedFinding) -> tuple[int, int]:
     """Return start and end of the time in which the conduct of each party is reported, within the recording."""
-    end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
+    end_ns = finding.drive_start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
     first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), CONDUCT_SPAN_S, strict=True))
-    return max(first, finding.start_ns), min(last, end_ns)
+    return max(first, finding.drive_start_ns), min(last, end_ns)
 
 
 def _conduct_values(
-    case: Case, span_ns: tuple[int, int], unused_second_rows: int, used_characters: int
+    case: Case, span_ns: tuple[int, int], unused_rows_of_seconds: int, used_characters: int
 ) -> dict[str, Any]:
     """Return the conduct of each party from its verdicts as ego, and the reasons why rules are undecided for both parties."""
     finding = case.finding
@@ -314,7 +320,7 @@ def _conduct_values(
         for row in case.result.findings.to_pylist()
     }
     found: list[dict[str, Any]] = []
-    for letter, who, judged in zip(PARTY_LETTERS, finding.parties, (case.again, case.other_party), strict=False):
+    for letter, who, judged in zip(PARTY_LETTERS, finding.parties, (case.ego_rows, case.other_party), strict=False):
         told: dict[str, Any] = {
             "letter": letter,
             "id": who,
@@ -325,7 +331,7 @@ def _conduct_values(
         if judged is not None and not isinstance(judged, str):
             findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
             told |= conduct_texts_and_counts(
-                judged.verdicts, findings, rules, span_ns, finding.start_ns, is_about_contact=finding.is_contact
+                judged.verdicts, findings, rules, span_ns, finding.drive_start_ns, is_about_contact=finding.is_contact
             )
         found.append(told)
     of_both = extract_shared_reasons(found)
@@ -335,7 +341,7 @@ def _conduct_values(
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEADING_CHARACTERS * bool(of_both["reasons"])
     lines += _NOTE_CHARACTERS * (bool(_warning_texts(case)) + bool(_clip_source_texts(case)))
-    further = fit_conduct_lists([*found, of_both], unused_second_rows, lines)
+    further = fit_conduct_lists([*found, of_both], unused_rows_of_seconds, lines)
     has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
     return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
 
@@ -363,7 +369,7 @@ def _certainty_values(case: Case) -> dict[str, Any]:
     return told
 
 
-def _sudden_contact_sentence(case: Case, motion: Motion) -> str:
+def _contact_by_speed_change_sentence(case: Case, motion: MotionOfParties) -> str:
     """Return in words how a contact is known if no boxes overlap: from a sudden change of speed; '' for other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
@@ -377,7 +383,7 @@ def _sudden_contact_sentence(case: Case, motion: Motion) -> str:
         return ""
     told = "no gap is known"
     if known.size:
-        at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.start_ns) / 1e9
+        at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.drive_start_ns) / 1e9
         told = f"least gap {known.min():.2f} m, at {at_s:.2f} s"
     boxes = (
         "the boxes do not touch at that time" if 0 < known.size == gaps.size else "whether the boxes touch is not known"

@@ -13,7 +13,7 @@ from drivelint.result.text import number, tolerance
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from drivelint.incident.motion import Motion, SlowingPeriod
+    from drivelint.incident.motion import MotionOfParties, SlowingPeriod
     from drivelint.result.text import Row
 
 SENSE_WORDS: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
@@ -101,7 +101,7 @@ def box_overlap_text(row: Row, rule: Row) -> str:
 
 
 def story_sentence(
-    motion: Motion,
+    motion: MotionOfParties,
     step_no: int | None,
     slowings: Sequence[list[SlowingPeriod]],
     *,
@@ -157,7 +157,7 @@ def story_sentence(
 
 
 def collision_title(
-    motion: Motion,
+    motion: MotionOfParties,
     step_no: int | None,
     *,
     time_text: str,
@@ -195,12 +195,12 @@ def _heading_difference_text(turn_rad: float) -> str:
     return "in the same direction" if turn_rad <= _ALONG_RAD else f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
 
 
-def _lane_departure_text(motion: Motion, step_no: int, moment_from_start_s: float) -> str:
+def _lane_departure_text(motion: MotionOfParties, step_no: int, moment_from_start_s: float) -> str:
     """Return in words when A left its lane, and the gap to B then; '' if A is in its lane at step `step_no`, or this was not examined."""
     since = float(motion.out_since[step_no])
     if math.isnan(since):
         return ""
-    i = motion.at(since)
+    i = motion.nearest_step(since)
     gap = math.nan if i is None else float(motion.gap[i])
     free = "" if math.isnan(gap) else f" with {gap:.2f} m between the boxes"
     return f"A left its lane at {since + moment_from_start_s:.2f} s{free}"

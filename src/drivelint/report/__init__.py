@@ -4,5 +4,5 @@ from __future__ import annotations
 
 from typing import Final
 
-NARROW_WIDTH: Final = 96
+NARROW_BELOW_COLUMNS: Final = 96
 """In a terminal with fewer columns, a finding takes two lines, and tables omit less important columns."""

@@ -71,13 +71,13 @@ def _map_note(drives: Sequence[Row]) -> InputNote:
         check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE_CHECK
     ]
     if aside:
-        words += f"{'; ' if off_egos else ', but '}{_far_aside_words(aside, egos)}"
+        words += f"{'; ' if off_egos else ', but '}{_far_from_lane_middle_words(aside, egos)}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
     return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
 
 
-def _far_aside_words(messages: Sequence[str], egos: int) -> str:
+def _far_from_lane_middle_words(messages: Sequence[str], egos: int) -> str:
     """Return words about the egos that drive far from the middle of their lanes.
 
     A shifted map would be wrong for most egos, not for a few.

@@ -92,7 +92,7 @@ class _UndecidedRules(NamedTuple):
         return 2 * self.n > self.of
 
     @property
-    def words(self) -> str:
+    def headline_words(self) -> str:
         """The part of the outcome's sentence about undecided rules."""
         which = "the rule that may apply" if self.of == 1 else f"{self.n} of the {self.of} rules that may apply"
         return f"{which} could not be judged{', counted for each drive and ego' if self.several else ''}"
@@ -141,7 +141,7 @@ def headline(result: Result) -> Headline:
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
             parts.append(HeadlinePart(f"{some}only possible"))
         if (open_rules := _count_undecided_rules(result)).are_most:
-            parts.append(HeadlinePart(open_rules.words, "warning"))
+            parts.append(HeadlinePart(open_rules.headline_words, "warning"))
     if less:
         parts.append(HeadlinePart(less, "warning"))
     if n := n_rules_without_map(result):
@@ -223,7 +223,7 @@ def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label:
         return "no findings, because no rule applied: the situations of the rules did not occur"
     if label in {_MOSTLY_UNKNOWN, _TOO_LITTLE_JUDGED}:
         open_rules = _count_undecided_rules(result)
-        return f"no findings, but {open_rules.words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
+        return f"no findings, but {open_rules.headline_words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
     return "no findings" if is_all_judged else "no findings, but not everything could be judged"
 
 

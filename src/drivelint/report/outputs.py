@@ -83,12 +83,12 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     contents[MARK_FILE] = summary.render(result)
     moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
     if work is not None:
-        moved |= _grown_files(work, result)
+        moved |= _result_files_in_work(work, result)
     folder.replace_result(out, contents, moved, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
     return tuple(sorted(moved))
 
 
-def _grown_files(work: Path, result: Result) -> dict[str, Path]:
+def _result_files_in_work(work: Path, result: Result) -> dict[str, Path]:
     """Return the files in `work` that belong to the result, by name."""
     judged = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
     files = [path for path in sorted(work.rglob("*")) if path.is_file() and not path.name.startswith(".")]

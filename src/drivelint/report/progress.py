@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 TELL_EVERY_S: Final = 60.0
 _CHECK_PERIOD_S: Final = 1.0
-_LEAST_DONE_SHARE: Final = 0.1
+_LEAST_SHARE_FOR_ESTIMATE: Final = 0.1
 """The remaining time is estimated after this share of the work."""
-_RESUMED_WITHIN_S: Final = 0.5
+_RESUMED_UNITS_REPORTED_WITHIN_S: Final = 0.5
 """Units that are reported within this time after the beginning of a stage were done by an earlier run."""
 
 
@@ -64,7 +64,7 @@ class NotePrinter(Silent):
     def advance(self, n: int = 1) -> None:
         """Count the units, and print the progress if the last progress line is at least a minute old."""
         self._done, self._part = self._done + n, 0.0
-        if time.monotonic() - self._begun_s < _RESUMED_WITHIN_S:
+        if time.monotonic() - self._begun_s < _RESUMED_UNITS_REPORTED_WITHIN_S:
             self._had = self._done  # done by an earlier run: not used to estimate the time left
         self.print_progress_if_due()
 
@@ -82,11 +82,13 @@ class NotePrinter(Silent):
         todo = self._total - self._had
         # no estimate from the first part of the work, which includes initialisation
         left_s = (
-            (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_DONE_SHARE * todo) and new else None
+            (now_s - self._begun_s) / new * (todo - new)
+            if new >= min(1.0, _LEAST_SHARE_FOR_ESTIMATE * todo) and new
+            else None
         )
         self.note(
             f"{self._name}: {self._done:,} of {self._total:,}"
-            f"{f' ({self._activity})' if self._activity else ''}{'' if left_s is None else f', {_duration(left_s)} left'}"
+            f"{f' ({self._activity})' if self._activity else ''}{'' if left_s is None else f', {_rough_duration_text(left_s)} left'}"
         )
 
     def note(self, text: str) -> None:
@@ -95,7 +97,7 @@ class NotePrinter(Silent):
             print(f"drivelint: {terminal_safe_line(text)}", file=sys.stderr, flush=True)
 
 
-def _duration(seconds: float) -> str:
+def _rough_duration_text(seconds: float) -> str:
     """Return a rough duration in words."""
     minutes = round(seconds / 60)
     return (
@@ -112,11 +114,11 @@ def note_printer() -> Iterator[NotePrinter]:
     """Yield a `NotePrinter` that also prints the progress every minute while a single step takes long."""
     printer, over = NotePrinter(), Event()
 
-    def tell() -> None:
+    def print_progress_until_over() -> None:
         while not over.wait(_CHECK_PERIOD_S):
             printer.print_progress_if_due()
 
-    teller = Thread(target=tell, daemon=True, name="tells how far it is")
+    teller = Thread(target=print_progress_until_over, daemon=True, name="tells how far it is")
     teller.start()
     try:
         yield printer

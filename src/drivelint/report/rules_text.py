@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.phrases import one_line
-from drivelint.report import NARROW_WIDTH
+from drivelint.report import NARROW_BELOW_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.catalogue.header import Conditions
 
-_MERGE_GAP_S: Final = 1.0
+_DEFAULT_MERGE_GAP_S: Final = 1.0
 """The default of `merge_gap_s` in a rule's header."""
 
 
@@ -35,7 +35,7 @@ def rules_as_json(rules: Iterable[Rule]) -> str:
 def rules_table(rules: Iterable[Rule], width: int = 120) -> Table:
     """Return a table of the rules for a terminal of `width` columns: id, kind, severity, status and title; if narrow, without kind."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    wide = width >= NARROW_WIDTH
+    wide = width >= NARROW_BELOW_COLUMNS
     for name in ("rule", *(("kind",) if wide else ()), "severity", "status"):
         table.add_column(name, no_wrap=True)
     table.add_column("question", ratio=1)
@@ -62,7 +62,7 @@ def rule_details(rule: Rule) -> Group:
         ("combine", "" if rule.combine == "each" else f"{rule.combine}: one verdict for all objects"),
         ("applies", _restrictions_text(rule.applies)),
         ("exempt after", _duration_text(rule, "exempt_after_s") if rule.exempt_after_s else ""),
-        ("merge gap", "" if rule.merge_gap_s == _MERGE_GAP_S else _duration_text(rule, "merge_gap_s")),
+        ("merge gap", "" if rule.merge_gap_s == _DEFAULT_MERGE_GAP_S else _duration_text(rule, "merge_gap_s")),
         ("observes", rule.observes or ""),
         ("sense", sense),
         ("near margin", "" if rule.near_margin is None else f"{rule.near_margin:g} {rule.unit}"),

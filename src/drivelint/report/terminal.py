@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drivelint.phrases import name_list
-from drivelint.report import NARROW_WIDTH, terminal_summary
+from drivelint.report import NARROW_BELOW_COLUMNS, terminal_summary
 from drivelint.report.outcome import one_per_event_and_status
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
@@ -63,13 +63,13 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
     """
     if not verbose:
         return terminal_summary.render(result, out, width)
-    wide = width >= NARROW_WIDTH
+    wide = width >= NARROW_BELOW_COLUMNS
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
         _drives_table(result, wide=wide),
         _rules_table(result, wide=wide),
         *_findings_tables(result, wide=wide),
-        _measurement_table(result, "Near misses: kept, but with a small margin", near, "yellow", wide=wide),
+        _finding_or_near_miss_table(result, "Near misses: kept, but with a small margin", near, "yellow", wide=wide),
         _unjudged_table(result),
         _quality_table(result),
         _assumptions_text(result),
@@ -118,18 +118,20 @@ def _findings_tables(result: Result, *, wide: bool) -> list[Table | None]:
     """Return the table of findings; with a gate, two tables: first the findings that fail the gate, then the other findings."""
     gate, rows = result.gate, result.findings
     if gate is None:
-        return [_measurement_table(result, "Findings", rows, "red", wide=wide)]
+        return [_finding_or_near_miss_table(result, "Findings", rows, "red", wide=wide)]
     stops = pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_())
     title = "New findings" if gate.baseline is not None else "Findings"
     return [
-        _measurement_table(result, title, rows.filter(stops), "red", wide=wide),
-        _measurement_table(
+        _finding_or_near_miss_table(result, title, rows.filter(stops), "red", wide=wide),
+        _finding_or_near_miss_table(
             result, "Known or waived findings: they do not gate", rows.filter(pc.invert(stops)), "dim", wide=wide
         ),
     ]
 
 
-def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
+def _finding_or_near_miss_table(
+    result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True
+) -> Table | None:
     """Return a table of findings or near misses with their measured values; None if `rows` is empty.
 
     The drive's name precedes its rows. In a narrow terminal the measured values are below the rule, so that no number or name is split.

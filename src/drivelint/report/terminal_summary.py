@@ -59,7 +59,7 @@ _STYLE_OF_LABEL: Final = {
     "ERROR": "bold magenta",
 }
 _STYLE_OF_OTHER_LABELS: Final = "bold yellow"
-_STYLE_OF_PART: Final = {"contact": "bold red", "possible contact": "red", "warning": "yellow"}
+_STYLE_OF_HEADLINE_PART: Final = {"contact": "bold red", "possible contact": "red", "warning": "yellow"}
 
 
 def render(result: Result, out: str | None, width: int = 120) -> Group:
@@ -114,7 +114,9 @@ def _outcome_text(result: Result) -> Text:
     told, ended = headline(result), exit_status(result)
     text = Text(f"{told.label}  ", _STYLE_OF_LABEL.get(told.label, _STYLE_OF_OTHER_LABELS))
     for n, part in enumerate(told.parts):
-        text.append(f"{'; ' if n else ''}", "default").append(part.words, _STYLE_OF_PART.get(part.kind, "default"))
+        text.append(f"{'; ' if n else ''}", "default").append(
+            part.words, _STYLE_OF_HEADLINE_PART.get(part.kind, "default")
+        )
     if ended.code == ExitCode.NOT_JUDGED:
         text.append(f"; {ended.why}", "default")
     return text

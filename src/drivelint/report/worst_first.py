@@ -29,7 +29,7 @@ def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
     keys = {
         "severity_no": pc.index_in(rows["severity"], value_set=pa.array(SEVERITIES)),
         "no_contact": pc.cast(pc.invert(pc.is_in(rows["rule_id"], value_set=contacts)), pa.int8()),
-        "sureness": pa.array(map(sureness_rank, _copy_counts(rows)), pa.int8()),
+        "sureness": pa.array(map(certainty_rank, _copy_counts(rows)), pa.int8()),
         "margin_or_0": pc.fill_null(rows["margin"], 0.0),
     }
     keyed = rows
@@ -38,7 +38,7 @@ def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
     return keyed.sort_by([(name, "ascending") for name in _SORT_COLUMNS]).drop_columns(list(keys))
 
 
-def sureness_rank(row: Row) -> int:
+def certainty_rank(row: Row) -> int:
     """Return 0 for a sure finding, 2 for a finding that is only possible, and 1 for a verdict or if no copies were judged."""
     said = None if row.get("n_copies") is None else certainty(row)
     return {SURE: 0, None: 1, POSSIBLE: 2}[said]

@@ -81,7 +81,7 @@ class DaskCluster:
             if ended:
                 self._workerless_since = None
                 return [self._task_outcome(future, self._running.pop(future)) for future in ended]
-            self._require_workers()
+            self._fail_if_long_workerless()
         return []
 
     def close(self) -> None:
@@ -101,7 +101,7 @@ class DaskCluster:
                 raise self._scheduler_error("a result could not be fetched") from error
             return TaskOutcome(task, error=error)  # the driver distinguishes kinds of errors
 
-    def _require_workers(self) -> None:
+    def _fail_if_long_workerless(self) -> None:
         try:
             workers = self._client.nthreads(callback_timeout=_CHECK_PERIOD_S)
         except OSError:  # Dask itself detects a lost connection, and then cancels the tasks

@@ -169,9 +169,9 @@ class _Worker:
         self._process.join()
 
 
-def _run_tasks_from_pipe(pipe: Connection, parent: int) -> None:
+def _run_tasks_from_pipe(pipe: Connection, driver_pid: int) -> None:
     """Run the tasks that arrive through the pipe. This is the main function of a worker process."""
-    prepare_worker_process(parent)
+    prepare_worker_process(driver_pid)
     while True:
         try:
             task: Task = pipe.recv()

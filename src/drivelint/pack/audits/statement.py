@@ -9,7 +9,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import ExitCode
-from drivelint.fleet_report.audit_views import open_packed_audit
+from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
 from drivelint.pack import bag
 from drivelint.pack.audits.tables import AUDIT_FOLDER
 from drivelint.pack.statement import (
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 def in_toto_statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about the audit whose tables and manifest are in the pack `folder`."""
-    with open_packed_audit(folder / AUDIT_FOLDER) as (con, _):
+    with open_audit_in_evidence_pack(folder / AUDIT_FOLDER) as (con, _):
         drives = (
             con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MAP_MISFIT_CODES)})
             .to_arrow_table()

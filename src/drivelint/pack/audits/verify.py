@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, rows_sha256, with_key
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.fleet_report.audit_views import open_packed_audit
+from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
 from drivelint.pack import consistency, reproduction, signature
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import in_toto_statement
@@ -77,7 +77,7 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
     """
     with ExitStack() as stack:
         try:
-            con, audit = stack.enter_context(open_packed_audit(request.folder / tables.AUDIT_FOLDER))
+            con, audit = stack.enter_context(open_audit_in_evidence_pack(request.folder / tables.AUDIT_FOLDER))
             evidence = consistency.read_evidence(request.folder)
             rules = pq.read_table(request.folder / tables.AUDIT_FOLDER / RULES_FILE)
             dirs = tuple(path_inside_pack(request.folder, place) for place in evidence["rules_dirs"])

@@ -13,7 +13,7 @@ from drivelint.audit.run import RULES_FILE
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import UsageError
-from drivelint.fleet_report.audit_views import open_audits, open_packed_audit
+from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack, open_audits
 from drivelint.pack import contents, reproduction
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import in_toto_statement
@@ -43,7 +43,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
     for name in names:
         (pack_folder / tables.AUDIT_FOLDER / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(request.folder / name, pack_folder / tables.AUDIT_FOLDER / name)
-    with open_packed_audit(pack_folder / tables.AUDIT_FOLDER) as (con, audit):
+    with open_audit_in_evidence_pack(pack_folder / tables.AUDIT_FOLDER) as (con, audit):
         said = json.loads((pack_folder / tables.AUDIT_FOLDER / SUMMARY_FILE).read_bytes())
         if wrong := tables.contradicted_summary_keys(con, audit, said):
             raise UsageError(f"{request.folder}: its summary and its tables do not agree ({wrong[0]}): audit again")

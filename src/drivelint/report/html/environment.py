@@ -58,8 +58,8 @@ def page_environment(
         style=Markup(style),  # noqa: S704 - ours
         script=Markup(script),  # noqa: S704 - ours
         picture_style=Markup(more),  # noqa: S704 - ours
-        policy=_policy(_hash(style), _hash(script)),
-        picture_policy=_policy(f"{_hash(style)} {_hash(more)}", _hash(script)),
+        policy=_content_security_policy(_csp_hash(style), _csp_hash(script)),
+        picture_policy=_content_security_policy(f"{_csp_hash(style)} {_csp_hash(more)}", _csp_hash(script)),
         anchor=anchor,
         number=number,
         version=__version__,
@@ -70,7 +70,7 @@ def page_environment(
     return environment
 
 
-def _policy(styles: str, script: str) -> str:
+def _content_security_policy(styles: str, script: str) -> str:
     return (
         f"default-src 'none'; style-src {styles}; script-src {script}; img-src data:; "
         "base-uri 'none'; form-action 'none'"
@@ -89,5 +89,5 @@ def _concatenated_texts(files: Iterable[Path]) -> str:
     return "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
 
 
-def _hash(text: str) -> str:
+def _csp_hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -20,7 +20,7 @@ def glossary_entries(texts: Iterable[str]) -> list[tuple[str, str]]:
     return [(entry["word"], entry["means"]) for entry in entries if entry["sign"] in said]
 
 
-def notes_on_known_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
+def notes_on_published_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
     """Return the notes on those published logs that are among the drives.
 
     Each file of `known_logs/` lists the sha256 of the logs that its note is about. A note has a `title` and, in each `row`,

@@ -18,7 +18,7 @@ WIDTH: Final = 420
 HEIGHT: Final = 132
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42.0, WIDTH - 8.0, 8.0, HEIGHT - 20.0
 _MOST_SHOWN_STEPS: Final = 9
-_LEAST_STEPS: Final = 3
+_LEAST_STEPS_FOR_CHART: Final = 3
 """The least number of steps for which a chart is drawn."""
 
 
@@ -38,7 +38,7 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
         }
         for i in range(first, min(first + _MOST_SHOWN_STEPS, len(t)))
     ]
-    measured = len(t) >= _LEAST_STEPS and any(value is not None for value in row["observed"])
+    measured = len(t) >= _LEAST_STEPS_FOR_CHART and any(value is not None for value in row["observed"])
     return {
         "chart": _chart(row, worst, unit, start_ns) if measured else None,
         "unit": unit or "",

@@ -28,13 +28,13 @@ ASSERTION_TITLES: Final = (
 """The conditions that the runtime assertions require, in the order of `overtake_record.stretches`."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _VERDICT_OF_ASSERTION: Final = {"nobody": "not_applicable"}
-_LABEL_DISTANCE_PERCENT: Final = 20.0  # percent: the width of a label on a phone
+_LEAST_LABEL_DISTANCE_PERCENT: Final = 20.0  # percent: the width of a label on a phone
 _LEAST_BAND_PERCENT: Final = 0.6  # percent: the least width of a band
 _VERDICTS_WORST_FIRST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONE_STARTS_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
 _DOT_SHAPE_PER_PROFILE: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
-_MOST_LABELS: Final = 10
+_NAMED_UP_TO_OVERTAKES: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIME_COLUMNS: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 MOST_SHOWN_SDA_M: Final = 2000.0
@@ -104,7 +104,7 @@ def _axis_labels(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     """Return positions and labels on the axis; labels that would overlap are joined at the position of the first."""
     kept: list[tuple[float, str]] = []
     for at, label in times:
-        if kept and at - kept[-1][0] < _LABEL_DISTANCE_PERCENT:
+        if kept and at - kept[-1][0] < _LEAST_LABEL_DISTANCE_PERCENT:
             kept[-1] = kept[-1][0], f"{kept[-1][1]}, {label}"
         else:
             kept.append((at, label))
@@ -181,7 +181,7 @@ def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[
             }
             for row, p in known
         ],
-        "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _MOST_LABELS else [],
+        "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _NAMED_UP_TO_OVERTAKES else [],
         "shapes": list(shapes.items()),
         "speed": number(v, "m/s"),
         "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,

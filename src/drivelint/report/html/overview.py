@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import pyarrow.compute as pc
 
 from drivelint.report.outcome import headline
-from drivelint.report.worst_first import is_contact, moment_ns, sureness_rank, worst_time_words
+from drivelint.report.worst_first import certainty_rank, is_contact, moment_ns, worst_time_words
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.text import closing_words, ego_name, measure, non_breaking, seconds
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _MOST_NAMED_CONTACTS: Final = 4
 _LEAST_KM_FOR_RATES: Final = 100.0
-_MOST_SUMMARISED_DRIVES: Final = 6
+_SUMMARIES_UP_TO_DRIVES: Final = 6
 _MOST_NAMED_PARTIES: Final = 6
 
 
@@ -44,7 +44,7 @@ def contact_summary(result: Result, lines: Sequence[FindingLine], rules: Mapping
     met = counts.group_rows(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
-        first = min(found, key=sureness_rank)
+        first = min(found, key=certainty_rank)
         who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # print the depth of the overlap: one centimetre may be an error of the recorder
         measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
@@ -152,7 +152,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
     `who`: the vehicles and people that the findings are about.
     """
     told = []
-    for section in sections if n_drives <= _MOST_SUMMARISED_DRIVES else ():
+    for section in sections if n_drives <= _SUMMARIES_UP_TO_DRIVES else ():
         who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
         summary = {
             "drive_id": section["drive_id"],

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
-from drivelint.report.html.explanations import glossary_entries, notes_on_known_logs
+from drivelint.report.html.explanations import glossary_entries, notes_on_published_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
 from drivelint.report.html.overtakes import MOST_SHOWN_SDA_M, overtake_views, overtaking_opportunities
 from drivelint.report.html.pictures import add_pictures, cameras_by_moment
@@ -53,7 +53,7 @@ MAX_CHARTS: Final = 150
 """The page shows the measured values over time of this many of the worst findings and near misses."""
 MAX_DRIVE_SECTIONS: Final = 60
 """This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
-MAX_UNFOLDED_DRIVES: Final = 3
+UNFOLDED_UP_TO_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
 
 BRIEF_ABOVE_DRIVES: Final = 20
@@ -76,7 +76,7 @@ def content(result: Result) -> dict[str, Any]:
     told = counts.verdict_counts_by(result.verdicts, "drive_id")
     counted = one_per_event_and_status(result.gate, result.findings.to_pylist())
     by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
-    rows = _worst_rows(result, rules)
+    rows = _worst_findings_and_near_misses(result, rules)
     shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
     lines = _finding_lines(result, rows, rules, starts, courses, linked_drives=shown)
@@ -95,7 +95,7 @@ def content(result: Result) -> dict[str, Any]:
             timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
             incidents(listed.get(row["drive_id"], []), drawn, row),
             involved_actors(listed.get(row["drive_id"], []), scenes),
-            unfolded=len(drives) <= MAX_UNFOLDED_DRIVES,
+            unfolded=len(drives) <= UNFOLDED_UP_TO_DRIVES,
         )
         for row in drives
         if row["drive_id"] in shown
@@ -133,7 +133,7 @@ def content(result: Result) -> dict[str, Any]:
         "broken": broken,
         "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
         "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
-        "notes": notes_on_known_logs([row for row in drives if row["status"] == "judged"]),
+        "notes": notes_on_published_logs([row for row in drives if row["status"] == "judged"]),
         "packs": overview.pack_summaries(result),
         "stories": told_of,
         "findings": failed,
@@ -174,7 +174,7 @@ def content(result: Result) -> dict[str, Any]:
     }
 
 
-def _worst_rows(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row]]:
+def _worst_findings_and_near_misses(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row]]:
     """Return the findings (`fail`), then the near misses (`near`) that the page shows, the worst first."""
     near = pc.and_(result.verdicts["near_miss"], pc.is_valid(result.verdicts["t_worst_ns"]))
     failed = worst_first(result.findings, rules).slice(0, MAX_FINDINGS).to_pylist()

@@ -63,11 +63,11 @@ def _shot_for_page(row: dict[str, Any]) -> dict[str, Any]:
         "width": row["width_px"],
         "height": row["height_px"],
         "is_at": row["shot"] == "at",
-        "told": _offset_text(row["t_frame_ns"] - row["t_ns"]),
+        "told": _time_from_moment_text(row["t_frame_ns"] - row["t_ns"]),
     }
 
 
-def _offset_text(off_ns: int) -> str:
+def _time_from_moment_text(off_ns: int) -> str:
     """Return in words when a frame was taken, relative to the moment."""
     if abs(off_ns) < _SAME_MOMENT_NS:
         return "at the moment"

@@ -30,7 +30,7 @@ _PAD_M: Final = (7.0, 3.5)
 _UNKNOWN_SIZE_M: Final = 0.8  # the drawn size of an actor whose size is unknown
 _MOST_LONG_LABELS: Final = 5
 _SCALE_BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
-_ROOM_BESIDE_VIEW: Final = 0.5  # actors up to half a view outside may enter the view when the scene is replayed
+_ROOM_BESIDE_VIEW_SHARE: Final = 0.5  # actors up to half a view outside may enter the view when the scene is replayed
 _TOUCH_M: Final = 0.005  # boxes nearer than this touch
 
 
@@ -88,7 +88,7 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
     shown = [box_corners_m(a) for a in (ego, *met)] + [ring for _, ring in rings]
     heading = lanes.road_heading_rad(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
     view = _fitted_view(ego, heading, np.concatenate(shown))
-    texts, gaps, told = _least_distances(ego, met, view)
+    texts, gaps, told = _least_distance_labels_and_lines(ego, met, view)
     texts += [
         _name_label(a, ego, met, view) for a in _actors_with_label([a for a in actors if view.has_actor(a)], ego, met)
     ]
@@ -106,7 +106,7 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
             for a in sorted(
                 (*others, ego), key=_drawn_area_m2, reverse=True
             )  # small actors are drawn over large actors
-            if a is ego or a in met or view.has_actor(a, _ROOM_BESIDE_VIEW)
+            if a is ego or a in met or view.has_actor(a, _ROOM_BESIDE_VIEW_SHARE)
         ],
         "gaps": gaps,
         "texts": texts,
@@ -214,7 +214,9 @@ def _paths_around_moment(way: Sequence[Row], lanes: DrawnLanes, t_ns: int) -> tu
     return polyline_path(xy[t <= t_ns]), polyline_path(xy[t >= t_ns]), dots
 
 
-def _least_distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str, str]], list[str], list[str]]:
+def _least_distance_labels_and_lines(
+    ego: Row, met: Sequence[Row], view: _View
+) -> tuple[list[dict[str, str]], list[str], list[str]]:
     """Return labels, lines and words of the least distances from the ego's box to the boxes of `met`."""
     texts, lines, told = [], [], []
     for actor in met:

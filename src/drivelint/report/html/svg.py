@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_MOST_UNCUT_SPANS: Final = 6.0
+_UNCUT_UP_TO_DECIDING_SPANS: Final = 6.0
 """An axis that is longer than this many times the distance between the deciding values is cut."""
-_SPANS_BEYOND_VALUES: Final = 1.5
+_SPANS_BEYOND_DECIDING_VALUES: Final = 1.5
 """A cut axis extends beyond the deciding values by this many times the distance between them."""
-_LEAST_SPAN_SHARE: Final = 0.01
+_LEAST_DECIDING_SPAN_SHARE: Final = 0.01
 """The distance between the deciding values counts as at least this share of the axis."""
 
 
@@ -83,12 +83,12 @@ def axis_for_deciding_values(
     whole = axis_around([*found, *core], start, end)
     if not core:
         return whole, []
-    span = max(max(core) - min(core), _LEAST_SPAN_SHARE * (whole.high - whole.low))
-    if whole.high - whole.low <= _MOST_UNCUT_SPANS * span:
+    span = max(max(core) - min(core), _LEAST_DECIDING_SPAN_SHARE * (whole.high - whole.low))
+    if whole.high - whole.low <= _UNCUT_UP_TO_DECIDING_SPANS * span:
         return whole, []
     low, high = (
-        max(whole.low, min(core) - _SPANS_BEYOND_VALUES * span),
-        min(whole.high, max(core) + _SPANS_BEYOND_VALUES * span),
+        max(whole.low, min(core) - _SPANS_BEYOND_DECIDING_VALUES * span),
+        min(whole.high, max(core) + _SPANS_BEYOND_DECIDING_VALUES * span),
     )
     return Axis(low, high, start, end), [v for v in (min(found), max(found)) if not low <= v <= high]
 

@@ -192,7 +192,7 @@ def _bands(verdicts: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     for verdict in _VERDICT_LAYERS:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
         rows = [row for row in verdicts if row["verdict"] == verdict]
-        for (start, end), reason in sorted((_judged_span(row, clock), verdict_reason(row)) for row in rows):
+        for (start, end), reason in sorted((_judged_span_percent(row, clock), verdict_reason(row)) for row in rows):
             if spans and start <= spans[-1][1]:
                 spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})
             else:
@@ -203,7 +203,7 @@ def _bands(verdicts: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     return bands
 
 
-def _judged_span(row: Row, clock: TimeAxis) -> tuple[float, float]:
+def _judged_span_percent(row: Row, clock: TimeAxis) -> tuple[float, float]:
     """Return start and end of the judged period in percent of the drive.
 
     Without a period, both are the reference time; without that, they are 0 and 100.

@@ -10,8 +10,8 @@ from urllib.parse import quote
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.incidents import incident_key
+from drivelint.report.html.moment_charts import charts_below_plan_view
 from drivelint.report.html.replay import centiseconds
-from drivelint.report.html.strips import strips
 from drivelint.result.text import breach_title, utc_at
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.result.text import Row
 
-_MOST_OTHER_TITLES: Final = 4
+_MOST_OTHER_RULE_TITLES: Final = 4
 
 
 class MomentEvidence(NamedTuple):
@@ -60,11 +60,16 @@ def worst_moment(
         "plan": evidence.pictures.get(at),
         "strips": None
         if scene is None
-        else strips(scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns),
+        else charts_below_plan_view(
+            scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns
+        ),
         "before": speeds_before_contact(scene, row, start_ns) if touched and scene is not None else None,
         "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
         "also": [
-            (how, list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_MOST_OTHER_TITLES])
+            (
+                how,
+                list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_MOST_OTHER_RULE_TITLES],
+            )
             for kind, how, title in (
                 ("fail", "also", breach_title),
                 ("near", "also only just kept", itemgetter("title")),

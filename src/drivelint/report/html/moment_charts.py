@@ -1,4 +1,4 @@
-"""Strips: charts below the plan view of the worst moment, one per recorded quantity, on a common time axis."""
+"""Charts below the plan view of the worst moment, one per recorded quantity, on a common time axis."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
-_HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the text above it, of the time axis
+_HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a chart, of the text above it, of the time axis
 _MOST_JOINED_NS: Final = 1_000_000_000
-_LEAST_VALUES: Final = 3
-"""The least number of values for which a strip is drawn."""
+_LEAST_VALUES_FOR_CHART: Final = 3
+"""The least number of values for which a chart is drawn."""
 _CHAR_WIDTH: Final = 6.6
-"""The greatest average width of a character above a strip, over all fonts of the page."""
+"""The greatest average width of a character above a chart, over all fonts of the page."""
 
 
-class StripLine(NamedTuple):
-    """One line of a strip; `kind`: ego, met (the other actor) or limit. At a value of None the line is interrupted."""
+class ChartLine(NamedTuple):
+    """One line of a chart; `kind`: ego, met (the other actor) or limit. At a value of None the line is interrupted."""
 
     kind: str
     name: str
@@ -35,8 +35,10 @@ class StripLine(NamedTuple):
     values: Sequence[float | None]
 
 
-def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, start_ns: int) -> dict[str, Any] | None:
-    """Return the strips for a finding from its row of the table `scene`; None if the scene has too few points of the ego's path.
+def charts_below_plan_view(
+    scene: Row, finding: Row, course: Row | None, observes: str | None, start_ns: int
+) -> dict[str, Any] | None:
+    """Return the charts for a finding from its row of the table `scene`; None if the scene has too few points of the ego's path.
 
     `course`: the finding's row of the table `course`; `observes`: the quantity that the rule measures.
     Coordinates are units of a viewBox that is 600 wide.
@@ -44,12 +46,12 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
     ego = scene["actors"][0]
     way = ego["path"] or []
     met = next((a for a in scene["actors"][1:] if a["actor_id"] == finding["object_id"] and a["path"]), None)
-    if len(way) < _LEAST_VALUES:
+    if len(way) < _LEAST_VALUES_FOR_CHART:
         return None
     t = [point["t_ns"] for point in way]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
     who = ([("met", met)] if met else []) + [("ego", ego)]  # drawn in this order
-    drawn: list[tuple[str, str, list[StripLine]]] = [
+    drawn: list[tuple[str, str, list[ChartLine]]] = [
         (title, unit, [_line_of_actor(kind, actor, column) for kind, actor in who])
         for title, unit, column in (
             ("speed", "m/s", "speed_mps"),
@@ -57,19 +59,23 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
             ("offset from the lane's centre, left positive", "m", "d_m"),
         )
     ]
-    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES
+    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES_FOR_CHART
     is_gap = measured and finding["unit"] == "m"
     if met and not is_gap and (gap := box_distance_line(ego, met)) is not None:
         drawn.append(("distance from box to box", "m", [gap]))
     if measured and course is not None:
         lines = [
-            StripLine("limit", "required", course["t_ns"], course["required"]),
-            StripLine("ego", "observed", course["t_ns"], course["observed"]),
+            ChartLine("limit", "required", course["t_ns"], course["required"]),
+            ChartLine("ego", "observed", course["t_ns"], course["observed"]),
         ]
         drawn.append((observes or "what the rule measures", finding["unit"] or "", lines))
-    kept = [each for each in drawn if any(sum(v is not None for v in line.values) >= _LEAST_VALUES for line in each[2])]
+    kept = [
+        each
+        for each in drawn
+        if any(sum(v is not None for v in line.values) >= _LEAST_VALUES_FOR_CHART for line in each[2])
+    ]
     found = [
-        _strip(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
+        _chart_of_quantity(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
         for n, each in enumerate(kept)
     ]
     height = len(found) * (_HEIGHT + _HEAD) + _FOOT
@@ -91,32 +97,32 @@ def _axis_in_seconds(x: Axis, start_ns: int) -> Axis:
     return Axis((x.low - start_ns) / 1e9, (x.high - start_ns) / 1e9, x.start, x.end)
 
 
-def _line_of_actor(kind: str, actor: Row, column: str) -> StripLine:
+def _line_of_actor(kind: str, actor: Row, column: str) -> ChartLine:
     short = brief_id(actor["actor_id"])
     name = ego_name(short) if kind == "ego" else f"object {short}"
-    return StripLine(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
+    return ChartLine(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
 
 
-def box_distance_line(ego: Row, met: Row) -> StripLine | None:
+def box_distance_line(ego: Row, met: Row) -> ChartLine | None:
     """Return the distance between two boxes at the times that both paths contain; None if a box's size is unknown."""
     if any(actor[side] is None for actor in (ego, met) for side in ("length_m", "width_m")):
         return None
     ways = [{point["t_ns"]: actor | point for point in actor["path"]} for actor in (ego, met)]
     t = sorted(ways[0].keys() & ways[1].keys())
     a, b = (shapely.polygons(np.array([box_corners_m(way[at]) for at in t])) if t else np.array([]) for way in ways)
-    return StripLine("ego", "distance", t, shapely.distance(a, b).tolist())
+    return ChartLine("ego", "distance", t, shapely.distance(a, b).tolist())
 
 
-def _strip(
-    n: int, title: str, unit: str, lines: Sequence[StripLine], worst_ns: int, *, x: Axis, course: Row | None
+def _chart_of_quantity(
+    n: int, title: str, unit: str, lines: Sequence[ChartLine], worst_ns: int, *, x: Axis, course: Row | None
 ) -> dict[str, Any]:
-    """Return one strip: its frame, the axis of values, the lines, and the extreme values that the frame cuts off."""
+    """Return one chart: its frame, the axis of values, the lines, and the extreme values that the frame cuts off."""
     top = n * (_HEIGHT + _HEAD) + _HEAD
     inside = [
         v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _is_on_axis(x, t)
     ]
     inside = inside or [v for line in lines for v in line.values if v is not None]
-    y, cut = axis_for_deciding_values(inside, _deciding_values(lines, course, worst_ns), top + _HEIGHT, top)
+    y, cut = axis_for_deciding_values(inside, _values_deciding_verdict(lines, course, worst_ns), top + _HEIGHT, top)
     cut_off = f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
     at_worst = _values_at_worst_text(lines, worst_ns)
     words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
@@ -143,7 +149,7 @@ def _is_on_axis(x: Axis, t_ns: int) -> bool:
     return x.low <= t_ns <= x.high
 
 
-def _deciding_values(lines: Sequence[StripLine], course: Row | None, worst_ns: int) -> list[float]:
+def _values_deciding_verdict(lines: Sequence[ChartLine], course: Row | None, worst_ns: int) -> list[float]:
     """Return the values that decide whether a rule was kept: the values at the worst step, and the required values that were not met."""
     if course is None:
         return []
@@ -152,8 +158,8 @@ def _deciding_values(lines: Sequence[StripLine], course: Row | None, worst_ns: i
     return [value for value in (*(line.values[at] for line in lines), *limits) if value is not None]
 
 
-def _values_at_worst_text(lines: Sequence[StripLine], worst_ns: int) -> str:
-    """Return the values at the worst step in words, without the unit, which the strip's title contains."""
+def _values_at_worst_text(lines: Sequence[ChartLine], worst_ns: int) -> str:
+    """Return the values at the worst step in words, without the unit, which the chart's title contains."""
     told = []
     for line in lines:
         value = dict(zip(line.t_ns, line.values, strict=True)).get(worst_ns)
@@ -177,7 +183,7 @@ def _failing_spans(course: Row, x: Axis) -> list[tuple[str, str]]:
     return [(svg_number(a), svg_number(max(b - a, 2.0))) for a, b in spans]
 
 
-def _line_path(line: StripLine, x: Axis, y: Axis) -> str:
+def _line_path(line: ChartLine, x: Axis, y: Axis) -> str:
     """Return the SVG path through the values, interrupted where a value is None or more than a second is missing."""
     parts, last = [], None
     for t, value in zip(line.t_ns, line.values, strict=True):

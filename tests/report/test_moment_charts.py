@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from drivelint.report.html.strips import LEFT, RIGHT, StripLine, _strip, strips
+from drivelint.report.html.moment_charts import LEFT, RIGHT, ChartLine, _chart_of_quantity, charts_below_plan_view
 from drivelint.report.html.svg import Axis
 from tests.report.synthetic import SECOND
 
@@ -21,8 +21,8 @@ from tests.report.synthetic import SECOND
 )
 def test_numbers_go_below_a_title_that_leaves_no_room(title: str, who: str, *, apart: bool) -> None:
     t = [n * SECOND for n in range(4)]
-    lines = [StripLine("met", who, t, [1.0, 2.0, 3.0, 4.0]), StripLine("ego", "ego 1", t, [4.0, 3.0, 2.0, 1.0])]
-    drawn = _strip(0, title, "m", lines, t[2], x=Axis(t[0], t[-1], LEFT, RIGHT), course=None)
+    lines = [ChartLine("met", who, t, [1.0, 2.0, 3.0, 4.0]), ChartLine("ego", "ego 1", t, [4.0, 3.0, 2.0, 1.0])]
+    drawn = _chart_of_quantity(0, title, "m", lines, t[2], x=Axis(t[0], t[-1], LEFT, RIGHT), course=None)
     assert drawn["at_worst"] == f"ego 1 2.00, {who} 3.00"
     top, height = float(drawn["top"]), float(drawn["height"])
     if apart:
@@ -35,9 +35,9 @@ def test_a_cut_takes_room_too() -> None:
     t = [n * SECOND for n in range(60)]
     values = [900.0, *([1.0] * 58), -900.0]
     course = {"t_ns": t, "required": [0.5] * 60, "holds": [True] * 60}
-    lines = [StripLine("limit", "required", t, [0.5] * 60), StripLine("ego", "observed", t, list(values))]
+    lines = [ChartLine("limit", "required", t, [0.5] * 60), ChartLine("ego", "observed", t, list(values))]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
-    drawn = _strip(0, "overlap of the danger spaces of both", "m", lines, t[30], x=x, course=course)
+    drawn = _chart_of_quantity(0, "overlap of the danger spaces of both", "m", lines, t[30], x=x, course=course)
     assert drawn["cut"]
     assert drawn["value_y"] != drawn["label_y"]
 
@@ -45,11 +45,14 @@ def test_a_cut_takes_room_too() -> None:
 def test_nothing_has_no_sign_but_of_a_measure_that_may_break_a_rule() -> None:
     t = [n * SECOND for n in range(4)]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
-    lines = [StripLine("ego", "ego 1", t, [-0.001] * 4)]
-    assert _strip(0, "speed", "m/s", lines, t[2], x=x, course=None)["at_worst"] == "ego 1 0.00"
+    lines = [ChartLine("ego", "ego 1", t, [-0.001] * 4)]
+    assert _chart_of_quantity(0, "speed", "m/s", lines, t[2], x=x, course=None)["at_worst"] == "ego 1 0.00"
     course = {"t_ns": t, "required": [0.0] * 4, "holds": [False] * 4}
-    lines = [StripLine("limit", "required", t, [0.0] * 4), StripLine("ego", "observed", t, [-0.001] * 4)]
-    assert _strip(0, "gap", "m", lines, t[2], x=x, course=course)["at_worst"] == "observed -0.00, required 0.00"
+    lines = [ChartLine("limit", "required", t, [0.0] * 4), ChartLine("ego", "observed", t, [-0.001] * 4)]
+    assert (
+        _chart_of_quantity(0, "gap", "m", lines, t[2], x=x, course=course)["at_worst"]
+        == "observed -0.00, required 0.00"
+    )
 
 
 def actor(name: str, y_m: float, d_m: float | None) -> dict[str, Any]:
@@ -71,7 +74,7 @@ def actor(name: str, y_m: float, d_m: float | None) -> dict[str, Any]:
 @pytest.mark.parametrize(("ego", "name"), [("ego", "ego"), ("7", "ego 7")])
 def test_an_ego_is_named_once_and_a_long_id_in_short(ego: str, name: str) -> None:
     long = "5f0d8a52-83b8-4b5c-9f6e-0d2a0a6ff001"
-    found = strips(
+    found = charts_below_plan_view(
         {"actors": [actor(ego, 0.0, 0.1), actor(long, 3.5, 3.6)]},
         {"object_id": long, "t_worst_ns": 2 * SECOND, "unit": "s"}, None, None, 0,
     )  # fmt: skip
@@ -83,6 +86,6 @@ def test_an_ego_is_named_once_and_a_long_id_in_short(ego: str, name: str) -> Non
 def test_without_offsets_from_a_lane_there_is_no_strip_of_them() -> None:
     finding = {"object_id": None, "t_worst_ns": 2 * SECOND, "unit": "s"}
     for d_m, there in ((0.1, True), (None, False)):
-        found = strips({"actors": [actor("ego", 0.0, d_m)]}, finding, None, None, 0)
+        found = charts_below_plan_view({"actors": [actor("ego", 0.0, d_m)]}, finding, None, None, 0)
         assert found is not None
         assert any("lane's centre" in strip["title"] for strip in found["strips"]) == there

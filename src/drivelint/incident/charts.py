@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from drivelint.incident.case import Case
-    from drivelint.incident.motion import Motion
+    from drivelint.incident.motion import MotionOfParties
     from drivelint.result.text import Row
 
-STRIP_WIDTH_PX: Final = 700
-_LEFT, _RIGHT = 46.0, STRIP_WIDTH_PX - 8.0
+CHART_WIDTH_PX: Final = 700
+_LEFT, _RIGHT = 46.0, CHART_WIDTH_PX - 8.0
 _TOP, _BOTTOM = 8.0, 97.0
 """Top and bottom of the drawn area in percent of a chart's height; that height depends on the free space on the page."""
 _FROM_S, _TO_S = -15.0, 7.0
@@ -40,7 +40,11 @@ class _ChartLine(NamedTuple):
 
 
 def charts_over_time(
-    motion: Motion, party_names: Sequence[str], gap_courses: Sequence[Row], finding_course: Row | None, moment_ns: int
+    motion: MotionOfParties,
+    party_names: Sequence[str],
+    gap_courses: Sequence[Row],
+    finding_course: Row | None,
+    moment_ns: int,
 ) -> list[dict[str, Any]]:
     """Return the charts from 15 s before to 7 s after the moment, within the drive.
 
