@@ -233,7 +233,9 @@ def check(
             raise
         result = gate_and_write(judged)
         stdout, code = _stdout_text(result, format_, out, verbose=verbose), int(exit_status(result).code)
-        receipts.store_receipt(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
+        receipts.store_receipt(
+            result, stdout, code, files_written_while_judging=grown, gate=gate_inputs, interruption=interruption
+        )
         if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
             progress.note(
                 f"the process took at most {format_bytes(most)} of memory, including memory outside the database"

@@ -34,7 +34,7 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     With `interrupt`, the first Ctrl-C calls `interrupt` repeatedly until the job ends; a second Ctrl-C raises `KeyboardInterrupt`.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    with ending_signals.record_signals_only() as asked:
+    with ending_signals.count_signals_only() as asked:
         is_told = False
         while not running.done():
             if asked() > (interrupt is not None):

@@ -31,7 +31,9 @@ _QUANTITY_SCHEMA = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())
 _CREATE_STATEMENT = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
-def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
+def create_tables_and_count_subjects(
+    con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]
+) -> tuple[dict[int, int], set[int]]:
     """Create the temporary tables of an evaluation.
 
     Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions are met at no step of these subjects.

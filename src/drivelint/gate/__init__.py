@@ -67,7 +67,7 @@ class GateInputs:
     def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: the difference from the baseline, the applied waivers, and the findings that are only
         possible."""
-        stated, waived = waivers.apply(self.waivers, result, self.today)
+        stated, waived = waivers.states_and_matches(self.waivers, result, self.today)
         difference = None
         if self.baseline is not None:
             difference = diff.compare(self.baseline, result, self.baseline_name, "this result")

@@ -225,10 +225,10 @@ class SceneFile(_StrictMapping, frozen=True):
 
 def read(path: Path) -> SceneFile:
     """Read a file of scenes, and the roads of the files that it names. Errors: `UsageError` with file and line."""
-    scene_file = _scene_file(path)
+    scene_file = _parse_scene_file(path)
     roads: dict[str, RoadLayout] = {}
     for name in scene_file.roads_from:
-        roads |= _scene_file(path.parent / name).roads
+        roads |= _parse_scene_file(path.parent / name).roads
     scene_file = msgspec.structs.replace(scene_file, roads=roads | scene_file.roads)
     names: dict[str, int] = {}
     for scene in scene_file.scenes:
@@ -242,7 +242,7 @@ def read(path: Path) -> SceneFile:
     return scene_file
 
 
-def _scene_file(path: Path) -> SceneFile:
+def _parse_scene_file(path: Path) -> SceneFile:
     try:
         loader = OnOffAsTextLoader(path.read_text(encoding="utf-8"))
         root = loader.get_single_node()

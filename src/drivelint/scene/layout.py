@@ -196,7 +196,10 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     for a, n, b, m in turns:
         before, behind = roads[a], roads[b]
         lane = before.lane(n)
-        start, end = before.lane_end_pose(lane, last=True), behind.lane_end_pose(behind.lane(m), last=False)
+        start, end = (
+            before.lane_exit_or_entry_pose(lane, is_exit=True),
+            behind.lane_exit_or_entry_pose(behind.lane(m), is_exit=False),
+        )
         width = min(lane.width, behind.lane(m).width)
         aside = width / 2  # the line is the lane's left border
         start, end = (
