@@ -174,12 +174,12 @@ def check(
     from drivelint import run
     from drivelint.engine.interruption import Interruption, NothingJudgedError
     from drivelint.engine.memory import format_bytes, peak_bytes
-    from drivelint.gate import GateInputs, refuse_own_baseline
+    from drivelint.gate import GateInputs, refuse_to_overwrite_baseline
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
     pack = option_values.pack_request(evidence, sign, out, overwrite=overwrite)
-    refuse_own_baseline(baseline, out)
+    refuse_to_overwrite_baseline(baseline, out)
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,

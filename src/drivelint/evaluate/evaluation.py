@@ -192,7 +192,7 @@ class Evaluation:
         self._has_doubts = "doubt" not in self._empty_tables
         self._has_sensors = bool(self._count_rows("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:
-            temp_tables.create_doubts(self.con, self.bindings)
+            temp_tables.create_table_of_doubted_steps(self.con, self.bindings)
         quick = [b for b in self.bindings if self._has_first_pass(b)]
         if quick:
             objects = any(binding.rule.per_object for binding in quick)
