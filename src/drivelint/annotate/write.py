@@ -125,7 +125,7 @@ class _ChannelWriter:
         self._write_messages(
             "events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses)
         )
-        said = result_messages.log_messages(verdicts, findings, times, start, senses)
+        said = result_messages.foxglove_log_messages(verdicts, findings, times, start, senses)
         self._write_messages("log", foxglove.schema("Log"), said)
         self._write_messages(
             "measures", result_messages.message_schema("measures"), measures.measure_messages(drive.measures, times)

@@ -11,7 +11,7 @@ import typer
 from drivelint import option_values
 from drivelint.cli import completion, options, packs, streams
 from drivelint.cli.console import (
-    name_earlier_result_on_failure,
+    say_earlier_folder_on_failure,
     rich_text,
     run_interruptible,
     say_kept_drives,
@@ -165,7 +165,7 @@ def check(
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
     receipts = StoredRunOfCheck(arguments, day, settings_file)
-    with name_earlier_result_on_failure(out):
+    with say_earlier_folder_on_failure(out):
         earlier = receipts.repeat_earlier_run()
     if earlier is not None:
         typer.echo(earlier.stdout, nl=False)
@@ -201,7 +201,7 @@ def check(
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()
-    with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with say_earlier_folder_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 

@@ -60,7 +60,7 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
 
 
 @contextmanager
-def name_earlier_result_on_failure(out: Path | None) -> Iterator[None]:
+def say_earlier_folder_on_failure(out: Path | None) -> Iterator[None]:
     """Print where the earlier result is, if the run inside the block ends without a result."""
     from drivelint.result.folder import EARLIER_FOLDER
 

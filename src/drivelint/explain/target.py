@@ -76,7 +76,7 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
         drive = _complete_name(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
     row = min(_matching_verdicts(rows, verdict_filter, result.start_times), key=_worst_first_key)
-    return Target(row, None, _other_verdicts(row, verdicts), _worst_finding(row, findings))
+    return Target(row, None, _other_verdicts(row, verdicts), _finding_with_worst_step(row, findings))
 
 
 def _verdicts_of_finding(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
@@ -96,7 +96,7 @@ def _verdicts_of_finding(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
     return exact or rows
 
 
-def _worst_finding(row: Row, findings: Iterable[Row]) -> Row | None:
+def _finding_with_worst_step(row: Row, findings: Iterable[Row]) -> Row | None:
     """Return the finding that contains the worst step of a failed verdict; None for other verdicts."""
     same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id", "object_id", "t_worst_ns")
     return next((f for f in findings if row["verdict"] == "fail" and all(f[key] == row[key] for key in same)), None)
