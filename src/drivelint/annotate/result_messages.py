@@ -82,7 +82,9 @@ def foxglove_log_messages(
         for row in verdicts.to_pylist()
         if row["verdict"] in {"error", "unknown"} or row["near_miss"]
     ]
-    return _sort_by_log_time([_foxglove_log_message(row, clock.log_time_at(row["t_ns"]), sense_by_rule) for row in rows])
+    return _sort_by_log_time(
+        [_foxglove_log_message(row, clock.log_time_at(row["t_ns"]), sense_by_rule) for row in rows]
+    )
 
 
 def _foxglove_log_message(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:

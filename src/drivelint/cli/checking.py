@@ -10,14 +10,14 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import completion, options, packs, streams
+from drivelint.cli.console import progress as bar
 from drivelint.cli.console import (
-    say_earlier_folder_on_failure,
     rich_text,
     run_interruptible,
+    say_earlier_folder_on_failure,
     say_kept_drives,
     say_nothing_kept,
 )
-from drivelint.cli.console import progress as bar
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError

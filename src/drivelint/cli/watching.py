@@ -10,8 +10,8 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import options
-from drivelint.cli.console import say_earlier_folder_on_failure, run_interruptible, say_nothing_kept
 from drivelint.cli.console import progress as bar
+from drivelint.cli.console import run_interruptible, say_earlier_folder_on_failure, say_nothing_kept
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import terminal_safe_json
