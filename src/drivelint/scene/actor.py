@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.arrays import Floats
-    from drivelint.scene.document import ActorText, Knots, MotionStep
+    from drivelint.scene.document import ActorEntry, Knots, MotionStep
     from drivelint.scene.road import Road
 
 DT_S: Final = 0.01
@@ -61,7 +61,7 @@ class Actor:
     """An actor and its motion."""
 
     name: str
-    text: ActorText
+    text: ActorEntry
     roads: Mapping[str, Road]
 
     @property
