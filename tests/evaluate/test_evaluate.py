@@ -105,15 +105,15 @@ def test_where_outcomes_of_several_rules_fail_each_rule_is_judged_alone(
     evaluate(con, packs)
     usual = con.execute(query).fetchall()
     con.execute("DELETE FROM verdict; DELETE FROM finding")
-    conclude, sizes = Evaluation.conclude, []
+    aggregate_pending_steps, sizes = Evaluation.aggregate_pending_steps, []
 
     def fail(self: Evaluation) -> None:
         sizes.append(len(self._pending))
         if len(self._pending) > 1 or self._pending[0].rule.id.endswith("map"):
             self.con.execute("SELECT 9_223_372_036_854_775_807 + n FROM range(1, 2) t(n)")
-        conclude(self)
+        aggregate_pending_steps(self)
 
-    monkeypatch.setattr(Evaluation, "conclude", fail)
+    monkeypatch.setattr(Evaluation, "aggregate_pending_steps", fail)
     monkeypatch.setattr("drivelint.evaluate.evaluation.MOST_PENDING_ROWS", most)
     evaluate(con, packs)
     found = con.execute(query).fetchall()

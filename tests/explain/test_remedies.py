@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
-from drivelint.reasons.reason_text import sentence_with_advice
+from drivelint.reasons.reason_text import sentence_if_it_has_advice
 from drivelint.reasons.signals import REMEDIES, remedy
 
 
@@ -43,8 +43,8 @@ def test_the_advice_of_the_cause_is_repeated(code: str, asked: str | None, told:
 def test_an_ego_that_is_no_vehicle_is_not_the_maps_fault() -> None:
     assert remedy("missing_registration", None, "osi-mcap").startswith("the map of this place (--map)")
     arguments = {"actor_class": "pedestrian", "n_on_lane": 3, "n_steps": 40}
-    assert sentence_with_advice("seldom_on_lane", arguments) is None
-    told = remedy("missing_registration", None, "osi-mcap", sentence_with_advice("ego_not_a_vehicle", arguments))
+    assert sentence_if_it_has_advice("seldom_on_lane", arguments) is None
+    told = remedy("missing_registration", None, "osi-mcap", sentence_if_it_has_advice("ego_not_a_vehicle", arguments))
     assert "3 of 40 steps, so it may not be the vehicle under test: choose the ego with --ego ID" in told
     assert "--map" not in told
 

@@ -98,7 +98,7 @@ ROW = finding()  # drive d1 (d1.csv), ego 1, object 3, profile nominal, at 8 s
 
 
 def waived(*given: Waiver, row: dict[str, Any] = ROW, today: date = TODAY) -> tuple[list[str], bool]:
-    stated, found = waivers.apply(given, result([verdict("fail")], [row]), today)
+    stated, found = waivers.states_and_matches(given, result([verdict("fail")], [row]), today)
     return [each.state for each in stated], row["finding_id"] in found
 
 
@@ -145,7 +145,7 @@ def test_a_waiver_counts_through_its_last_day(today: date, state: str) -> None:
 
 def test_of_two_waivers_the_first_that_counts_waives_and_none_is_unmatched() -> None:
     given = (waiver(expires="2026-01-01"), waiver(owner="al"), waiver(owner="bo"))
-    stated, found = waivers.apply(given, result([verdict("fail")], [ROW]), TODAY)
+    stated, found = waivers.states_and_matches(given, result([verdict("fail")], [ROW]), TODAY)
     assert [(each.state, each.findings) for each in stated] == [("expired", 1), ("active", 1), ("active", 1)]
     assert found == {ROW["finding_id"]: 1}
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from drivelint.catalogue import load_rules
-from drivelint.catalogue.header import EXCUSES_TAG
+from drivelint.catalogue.header import EXCUSABLE_RULE_TAG
 from drivelint.incident.breaches import ADVICE_VERBS, reason_without_advice
 from drivelint.incident.conduct import conduct_texts_and_counts
 from drivelint.incident.fitting import UndecidedReason, extract_shared_reasons, first_fitted_texts, fit_conduct_lists
@@ -178,7 +178,7 @@ def test_a_rule_that_excuses_something_says_so_by_its_tag() -> None:
     excuses = re.compile(r"outside an? |, or may |own accord|without an emergency|nobody in its way|, unless ")
     rules = load_rules().values()
     assert {rule.id for rule in rules if excuses.search(rule.hypothesis)} == {
-        rule.id for rule in rules if EXCUSES_TAG in rule.tags
+        rule.id for rule in rules if EXCUSABLE_RULE_TAG in rule.tags
     }
 
 

@@ -23,7 +23,7 @@ from drivelint.pictures.frames import (
     is_camera,
     read_frame,
 )
-from drivelint.pictures.images import MOST_PICTURE_BYTES, small_jpeg
+from drivelint.pictures.images import LOWER_QUALITY_ABOVE_BYTES, small_jpeg
 from drivelint.pictures.video import is_known_key_frame
 from tests.formats.ros2 import ros_log as ros
 from tests.pictures.camera_bag import bars, jpeg, number_in
@@ -170,7 +170,7 @@ def test_a_picture_is_small_whatever_it_shows() -> None:
     noise = np.random.default_rng(0).integers(0, 256, (1080, 1920, 3), np.uint8)
     shown = small_jpeg(EncodedImage(jpeg(noise)))
     assert (shown.width_px, shown.height_px) == (480, 270)  # a quarter
-    assert len(shown.data) <= MOST_PICTURE_BYTES
+    assert len(shown.data) <= LOWER_QUALITY_ABOVE_BYTES
 
 
 def test_what_shows_no_picture_is_no_camera() -> None:

@@ -54,8 +54,8 @@ def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
         == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
     )
     code, arguments = reason_text.parse_reason(reason)
-    assert reason_text.sentence_with_advice(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
-    assert reason_text.sentence_with_advice("stood", {"braked": "it"}, 0, OWN) is None
+    assert reason_text.sentence_if_it_has_advice(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
+    assert reason_text.sentence_if_it_has_advice("stood", {"braked": "it"}, 0, OWN) is None
     assert reason_text.codes_in(code, arguments) == {"stood", "came_by"}
 
 

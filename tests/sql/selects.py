@@ -86,7 +86,7 @@ def of_rules() -> dict[str, str]:
                 try:
                     run.prepare()
                     run.judge_rule(binding)
-                    run.conclude()
+                    run.aggregate_pending_steps()
                 finally:
                     temp_tables.drop_tables(con)
                 for no, sql in enumerate(run.texts):

@@ -34,7 +34,7 @@ _HEIGHT_IF_UNKNOWN_M: Final = 1.5
 RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
-def select_box_rows(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
+def box_rows_and_step_interval(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
     """Return the rows with a position and a heading, by time and actor, and n. Above `MAX_BOXES` rows, only every n-th step is included."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))

@@ -13,7 +13,7 @@ import pyarrow.compute as pc
 from drivelint.annotate.layout import layout_json
 from drivelint.annotate.measures import margin_series
 from drivelint.annotate.road import Road
-from drivelint.annotate.write import AnnotatedDrive, write_log
+from drivelint.annotate.write import DriveToAnnotate, write_log
 from drivelint.engine.barrier import refusal_of
 from drivelint.engine.batch import have_many_states
 from drivelint.errors import ChangedLogError, DriveLintError
@@ -103,7 +103,7 @@ class Annotator:
                 road = self._cached_road(drive.environment)
                 with _open_for_atomic_write(self._folder / f"{name}.mcap") as file:
                     write_log(
-                        file, AnnotatedDrive(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo)
+                        file, DriveToAnnotate(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo)
                     )
             except (ChangedLogError, OutputError):
                 raise  # the log has changed after the verdicts, or no log can be written at all

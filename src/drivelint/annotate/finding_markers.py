@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 FAIL_COLOUR = Colour(0.90, 0.16, 0.16)
 NEAR_MISS_COLOUR = Colour(1.00, 0.62, 0.05)
-MAX_STEPS: Final = 5_000
+MAX_MARKER_STEPS_PER_DRIVE: Final = 5_000
 """The most steps of findings that are drawn per drive; if there are more, only every second, third ... step."""
-DRAW_BEFORE_NS: Final = 1_000_000_000  # a short event is drawn longer, so that a person sees it
-DRAW_AFTER_NS: Final = 2_000_000_000
+DRAW_BEFORE_NEAR_MISS_NS: Final = 1_000_000_000  # a short event is drawn longer, so that a person sees it
+LEAST_DRAW_AFTER_EVENT_NS: Final = 2_000_000_000
 LABEL_OFFSET_M: Final = 9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
 MAX_LABEL_LINES: Final = 5
 _SIZE_IF_UNKNOWN_M: Final = 1.0
@@ -68,11 +68,11 @@ class MarkerAtStep(NamedTuple):
 def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, str]) -> list[Marker]:
     """Return markers: first of findings by severity, during their failing steps; then of near misses, around their worst step."""
     drawn = [
-        (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
+        (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + LEAST_DRAW_AFTER_EVENT_NS))
         for row in sorted(findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
     drawn += [
-        (row, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NS, t + DRAW_AFTER_NS)
+        (row, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NEAR_MISS_NS, t + LEAST_DRAW_AFTER_EVENT_NS)
         for row in verdicts.filter(verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
@@ -84,8 +84,8 @@ def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, 
 
 def messages(drawn_markers: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return the SceneUpdates of all markers (`drawn_markers`): one for every step of a marker, and an empty one after each marker."""
-    steps = [_steps_of_marker(tracks, window) for window in drawn_markers]
-    every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
+    steps = [_marker_steps_and_next_step(tracks, window) for window in drawn_markers]
+    every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_MARKER_STEPS_PER_DRIVE))
     frames_at: dict[int, list[MarkerAtStep]] = {}
     for window, (times, behind) in zip(drawn_markers, steps, strict=True):
         thinned = times[::every]
@@ -102,7 +102,7 @@ def messages(drawn_markers: Sequence[Marker], tracks: Tracks, clock: LogClock) -
     return out
 
 
-def _steps_of_marker(tracks: Tracks, marker: Marker) -> tuple[Times, int | None]:
+def _marker_steps_and_next_step(tracks: Tracks, marker: Marker) -> tuple[Times, int | None]:
     """Return the ego's steps in the time range of a marker, and the next step after it."""
     times = tracks.times(marker.ego_id)
     first, end = (int(i) for i in np.searchsorted(times, [marker.start_ns, marker.end_ns + 1]))

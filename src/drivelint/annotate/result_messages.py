@@ -72,7 +72,7 @@ def event_messages(rows: pa.Table, clock: LogClock, sense_by_rule: Mapping[str, 
     return _sort_by_log_time(events)
 
 
-def log_messages(
+def foxglove_log_messages(
     verdicts: pa.Table, findings: pa.Table, clock: LogClock, t_start_ns: int, sense_by_rule: Mapping[str, str]
 ) -> list[Message]:
     """Return `foxglove.Log` lines for a person: each finding once, at its start; near misses, unknown verdicts and errors."""
@@ -82,10 +82,12 @@ def log_messages(
         for row in verdicts.to_pylist()
         if row["verdict"] in {"error", "unknown"} or row["near_miss"]
     ]
-    return _sort_by_log_time([_log_line(row, clock.log_time_at(row["t_ns"]), sense_by_rule) for row in rows])
+    return _sort_by_log_time(
+        [_foxglove_log_message(row, clock.log_time_at(row["t_ns"]), sense_by_rule) for row in rows]
+    )
 
 
-def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:
+def _foxglove_log_message(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:
     critical = (row["verdict"], row["severity"]) == ("fail", "critical")
     level = foxglove.ERROR if critical else _LEVEL_OF_VERDICT[row["verdict"]]
     # a reason that states the numbers needs no headline with the same numbers

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 NEAR_LANES_M: Final = 40.0
 """Lanes within about this distance of an actor's path are drawn (the path is reduced to cells of a grid of this size)."""
-_GRID_ROWS: Final = 1 << 31  # more than any map has in one column of the grid
+_CELL_NUMBERS_PER_COLUMN: Final = 1 << 31  # more than any map has in one column of the grid
 ASPHALT = Colour(0.27, 0.28, 0.30)
 PAVEMENT = Colour(0.42, 0.40, 0.37)
 VERGE = Colour(0.33, 0.36, 0.32)
@@ -65,7 +65,7 @@ class Road:
 
     def _distinct_lanelet_numbers_near(self, x: Floats, y: Floats) -> NDArray[np.int64]:
         column, row = (np.floor(values / NEAR_LANES_M).astype(np.int64) for values in (x, y))
-        _, first = np.unique(column * _GRID_ROWS + row, return_index=True)
+        _, first = np.unique(column * _CELL_NUMBERS_PER_COLUMN + row, return_index=True)
         cells = np.stack([column[first], row[first]])
         around = shapely.box(*((cells - 1) * NEAR_LANES_M), *((cells + 2) * NEAR_LANES_M))
         return np.unique(self._lanelet_of_segment[self._spatial_index.query(around)[1]])

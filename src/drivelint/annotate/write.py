@@ -40,7 +40,7 @@ _TRANSFORM_SCHEMAS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "
 
 
 @dataclass(frozen=True)
-class AnnotatedDrive:
+class DriveToAnnotate:
     """The results of one drive that are written into its annotated log.
 
     `result` is the result as if the drive had been checked alone. `spaces` are the danger spaces in overtakes, `chains` the lane chains
@@ -58,7 +58,7 @@ class AnnotatedDrive:
     geo: GeoFrame | None
 
 
-def write_log(file: BinaryIO, drive: AnnotatedDrive) -> None:
+def write_log(file: BinaryIO, drive: DriveToAnnotate) -> None:
     """Write the annotated log of one drive; messages of a damaged log are not copied. The same inputs give the same bytes.
 
     Errors: `TraceError` if the log cannot be copied.
@@ -84,7 +84,7 @@ def _is_damaged(trace: Trace) -> bool:
 class _ChannelWriter:
     """Adds the channels of one drive to a sink, which contains a copy of the log or nothing yet."""
 
-    def __init__(self, sink: Sink, drive: AnnotatedDrive, t_start_ns: int) -> None:
+    def __init__(self, sink: Sink, drive: DriveToAnnotate, t_start_ns: int) -> None:
         self._sink = sink
         self._drive = drive
         self._start_ns = t_start_ns
@@ -100,7 +100,7 @@ class _ChannelWriter:
         """Write every channel, then the metadata and the attachment."""
         drive, tracks, times, start = self._drive, self._tracks, self._clock, self._start_ns
         verdicts, findings, senses = drive.result.verdicts, drive.result.findings, self._sense_by_rule
-        boxes, every = actor_boxes.select_box_rows(tracks)
+        boxes, every = actor_boxes.box_rows_and_step_interval(tracks)
         scene = foxglove.schema("SceneUpdate")
         if drive.road is not None and len(boxes):
             at = times.log_time_at(start)
@@ -125,7 +125,7 @@ class _ChannelWriter:
         self._write_messages(
             "events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses)
         )
-        said = result_messages.log_messages(verdicts, findings, times, start, senses)
+        said = result_messages.foxglove_log_messages(verdicts, findings, times, start, senses)
         self._write_messages("log", foxglove.schema("Log"), said)
         self._write_messages(
             "measures", result_messages.message_schema("measures"), measures.measure_messages(drive.measures, times)

@@ -32,7 +32,7 @@ def _are_numbers(value: object) -> bool:
     return isinstance(value, Collection) and not isinstance(value, str | bytes) and all(map(_is_number, value))
 
 
-def _are_paths(value: object) -> bool:
+def _is_path_or_iterable(value: object) -> bool:
     return _is_path(value) or isinstance(value, Iterable)  # items of an iterator are checked later, when they are read
 
 
@@ -44,10 +44,10 @@ _CHECK_OF_TYPE: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "float": (_is_number, "a number"),
     "date": (lambda given: isinstance(given, date), "a date"),
     "AnyPath": (_is_path, "a path"),
-    "Paths": (_are_paths, "a path, or several"),
-    "Texts": (lambda given: given is None or _are_paths(given), "a text, or several"),
+    "Paths": (_is_path_or_iterable, "a path, or several"),
+    "Texts": (lambda given: given is None or _is_path_or_iterable(given), "a text, or several"),
     "Assignments": (
-        lambda given: given is None or _are_paths(given) or isinstance(given, Mapping),
+        lambda given: given is None or _is_path_or_iterable(given) or isinstance(given, Mapping),
         "texts KEY=VALUE, or a dictionary",
     ),
     "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),

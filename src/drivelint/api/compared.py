@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drivelint.api.check_result import CheckResult
-from drivelint.api.notebook import block_html
+from drivelint.api.notebook import preformatted_html
 from drivelint.api.options import FailOn, require_one_of
 from drivelint.errors import UsageError
 from drivelint.gate import compare_results, descriptions
@@ -54,7 +54,7 @@ class Comparison:
         return self.text
 
     def _repr_html_(self) -> str:
-        return block_html(self.text)
+        return preformatted_html(self.text)
 
 
 def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: FailOn | None = None) -> Comparison:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.api.notebook import block_html
+from drivelint.api.notebook import preformatted_html
 from drivelint.explain import text
 
 if TYPE_CHECKING:
@@ -39,4 +39,4 @@ class Explained:
         return self.text
 
     def _repr_html_(self) -> str:
-        return block_html(self.text)
+        return preformatted_html(self.text)

@@ -37,7 +37,7 @@ def _input_notes_text(result: Result) -> str:
     return replace_options_by_keywords(" | ".join(f"{note.label}: {note.words}" for note in input_notes(result)))
 
 
-def block_html(text: str) -> str:
+def preformatted_html(text: str) -> str:
     """Return text as HTML whose columns stay aligned, independently of the style of the page around it."""
     return f'<pre><span style="display: inline-block; font-family: monospace; line-height: 1.2">{escape(text)}</span></pre>'
 

@@ -54,19 +54,19 @@ class Timeline(Table):
     in its unit, at the steps that it judged. NULL: unknown, or no value at this time stamp.
     """
 
-    __slots__ = ("_strips", "_title")
+    __slots__ = ("_chart_data", "_title")
 
-    def __init__(self, rows: pa.Table, strips: dict[str, Any] | None, title: str) -> None:
+    def __init__(self, rows: pa.Table, chart_data: dict[str, Any] | None, title: str) -> None:
         super().__init__(rows)
-        self._strips, self._title = strips, title
+        self._chart_data, self._title = chart_data, title
 
     def plot(self) -> Figure | None:
         """Return the charts of the report: speeds, gap, and the rule's measured value; None if the ego's path is unknown."""
-        if self._strips is None:
+        if self._chart_data is None:
             return None
         template = page_environment(()).from_string(_PAGE)
         return Figure(
-            template.render(s=self._strips, title=self._title), round(float(self._strips["height"]) * 1.1) + 60
+            template.render(s=self._chart_data, title=self._title), round(float(self._chart_data["height"]) * 1.1) + 60
         )
 
 

@@ -28,7 +28,7 @@ def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     """
     rules: dict[str, Rule] = {}
     for file, is_shipped in _all_rule_files(dirs):
-        rule = read_rule(file, with_words=not is_shipped)
+        rule = read_rule(file, check_words=not is_shipped)
         if rule.id in rules:
             raise RuleError(
                 f"{file}: rule {rule.id} exists already in {rules[rule.id].path}; give this one another name or pack"
@@ -43,7 +43,7 @@ def load_rule(rule_id: str, dirs: Sequence[Path] = ()) -> Rule | None:
     Errors: `RuleError` with file and line, also for a folder without rules.
     """
     files = ((file, is_shipped) for file, is_shipped in _all_rule_files(dirs) if rule_id_of(file) == rule_id)
-    return next((read_rule(file, with_words=not is_shipped) for file, is_shipped in files), None)
+    return next((read_rule(file, check_words=not is_shipped) for file, is_shipped in files), None)
 
 
 def _all_rule_files(dirs: Sequence[Path]) -> Iterator[tuple[Path, bool]]:
@@ -78,16 +78,16 @@ def _resolve_folder(path: Path) -> Path:
     return path.resolve()
 
 
-def read_rule(file: Path, *, with_words: bool = True) -> Rule:
+def read_rule(file: Path, *, check_words: bool = True) -> Rule:
     """Read and check one rule file, and return the rule. Errors: `RuleError` with file and line.
 
-    `with_words`: also check the words in its SQL, see `check_words`. Only the tests do this for shipped rules, since it needs a third of
+    `check_words`: also check the words in its SQL, see `rule_words`. Only the tests do this for shipped rules, since it needs a third of
     the time for reading them.
     """
     pack = _pack_folder(file)
     if not file.is_file():
         raise RuleError(f"{file}: a rule must be a file, but this is not one")
-    return _cached_rule(file, pack.name, _pack_title(pack), file.read_bytes(), with_words=with_words)
+    return _cached_rule(file, pack.name, _pack_title(pack), file.read_bytes(), check_words=check_words)
 
 
 _RULE_MEMO: Final = Memo[Rule]("rules", Rule)
@@ -95,14 +95,14 @@ _RULE_MEMO: Final = Memo[Rule]("rules", Rule)
 
 
 @lru_cache(maxsize=1024)  # a process may load the same rules many times, and they seldom change
-def _cached_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
+def _cached_rule(file: Path, pack: str, pack_title: str, content: bytes, *, check_words: bool) -> Rule:
     def parse_rule() -> Rule:
         from drivelint.catalogue.rule_file import checked_rule  # imported here, since it imports the SQL parser
 
-        return checked_rule(file, pack, pack_title, content, with_words=with_words)
+        return checked_rule(file, pack, pack_title, content, check_words=check_words)
 
     return _RULE_MEMO.find_or_compute(
-        "\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), parse_rule
+        "\0".join([str(file), pack, pack_title, str(check_words), content.decode("latin-1")]), parse_rule
     )
 
 

@@ -40,10 +40,10 @@ class Section(NamedTuple):
     sql_line: int
 
 
-def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
+def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, check_words: bool) -> Rule:
     """Check the content of a rule file and return the rule. Errors: `RuleError` with file and line.
 
-    `pack`, `pack_title`: name and title of its pack; `with_words`: also check the words in its SQL.
+    `pack`, `pack_title`: name and title of its pack; `check_words`: also check the words in its SQL.
     """
     for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
@@ -76,7 +76,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
     problems += _reads_problems(header, queries, f"{file}:{line_of_key(toml, 'reads')}")
     problems += _param_problems(header, queries, file, toml)
     problems += _reason_problems(header, queries, file, toml)
-    if with_words:
+    if check_words:
         with collect_problems(problems):
             _refuse_wrong_words(header, sections, file, toml)
     raise_problems(problems)

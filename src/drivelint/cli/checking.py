@@ -10,14 +10,14 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import completion, options, packs, streams
+from drivelint.cli.console import progress as bar
 from drivelint.cli.console import (
-    name_earlier_result_on_failure,
     rich_text,
     run_interruptible,
+    say_earlier_folder_on_failure,
     say_kept_drives,
     say_nothing_kept,
 )
-from drivelint.cli.console import progress as bar
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
@@ -165,7 +165,7 @@ def check(
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
     receipts = StoredRunOfCheck(arguments, day, settings_file)
-    with name_earlier_result_on_failure(out):
+    with say_earlier_folder_on_failure(out):
         earlier = receipts.repeat_earlier_run()
     if earlier is not None:
         typer.echo(earlier.stdout, nl=False)
@@ -174,12 +174,12 @@ def check(
     from drivelint import run
     from drivelint.engine.interruption import Interruption, NothingJudgedError
     from drivelint.engine.memory import format_bytes, peak_bytes
-    from drivelint.gate import GateInputs, refuse_own_baseline
+    from drivelint.gate import GateInputs, refuse_to_overwrite_baseline
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
     pack = option_values.pack_request(evidence, sign, out, overwrite=overwrite)
-    refuse_own_baseline(baseline, out)
+    refuse_to_overwrite_baseline(baseline, out)
     settings = run.CheckOptions(
         traces=tuple(traces),
         **drive,
@@ -201,7 +201,7 @@ def check(
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()
-    with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with say_earlier_folder_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
@@ -233,7 +233,9 @@ def check(
             raise
         result = gate_and_write(judged)
         stdout, code = _stdout_text(result, format_, out, verbose=verbose), int(exit_status(result).code)
-        receipts.store_receipt(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
+        receipts.store_receipt(
+            result, stdout, code, files_written_while_judging=grown, gate=gate_inputs, interruption=interruption
+        )
         if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
             progress.note(
                 f"the process took at most {format_bytes(most)} of memory, including memory outside the database"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 
-def report_check(folder: Path, to: str, base_url: str | None) -> None:
+def write_report_of_check(folder: Path, to: str, base_url: str | None) -> None:
     """Write a report of a check into its folder, and print its name."""
     from drivelint.report import markdown
     from drivelint.report.outputs import REPORT_FORMATS

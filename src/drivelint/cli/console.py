@@ -34,7 +34,7 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     With `interrupt`, the first Ctrl-C calls `interrupt` repeatedly until the job ends; a second Ctrl-C raises `KeyboardInterrupt`.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    with ending_signals.record_signals_only() as asked:
+    with ending_signals.count_signals_only() as asked:
         is_told = False
         while not running.done():
             if asked() > (interrupt is not None):
@@ -60,7 +60,7 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
 
 
 @contextmanager
-def name_earlier_result_on_failure(out: Path | None) -> Iterator[None]:
+def say_earlier_folder_on_failure(out: Path | None) -> Iterator[None]:
     """Print where the earlier result is, if the run inside the block ends without a result."""
     from drivelint.result.folder import EARLIER_FOLDER
 

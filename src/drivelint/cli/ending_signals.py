@@ -32,7 +32,7 @@ def install_handlers() -> None:
 
 
 @contextmanager
-def record_signals_only() -> Iterator[Callable[[], int]]:
+def count_signals_only() -> Iterator[Callable[[], int]]:
     """Only record signals inside the block, without an exception; yield a function that returns the number of recorded signals.
 
     The number includes signals before the block whose exception was lost.

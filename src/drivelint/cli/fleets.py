@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
 
 
-def report_audit(
+def write_report_of_audit(
     dest: str,
     to: str,
     by: Sequence[str],

@@ -136,11 +136,11 @@ class StoredRunOfCheck:
         stdout: str,
         exit_code: int,
         *,
-        grown_files: tuple[str, ...],
+        files_written_while_judging: tuple[str, ...],
         gate: GateInputs | None,
         interruption: Interruption,
     ) -> None:
-        """Store a receipt of a finished run, if possible. `grown_files`: the result files that were written during judging."""
+        """Store a receipt of a finished run, if possible. `files_written_while_judging`: their names."""
         if self._key is None or self._recorder is None or interruption.requested or not _depends_on_inputs_only(result):
             return
         if result.run_options is None or self._contains_outputs(result.run_options.traces.values()):
@@ -156,7 +156,7 @@ class StoredRunOfCheck:
                 else sorted(written_files(self._out), key=lambda name: (name == MARK_FILE, name))
             )
             sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
-            receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
+            receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, files_written_while_judging)
             store.store_receipt(self._key, receipt, self._out)
 
     def _contains_outputs(self, paths: Iterator[str] | Any) -> bool:

@@ -99,7 +99,9 @@ def report(
             raise UsageError(
                 f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are only for a check"
             )
-        fleets.report_audit(dest, to, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet)
+        fleets.write_report_of_audit(
+            dest, to, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet
+        )
     elif of_an_audit:
         raise UsageError(
             f"--by, --baseline, --drive-pages and --moments are only for an audit, and {dest} is not an "
@@ -112,7 +114,7 @@ def report(
     elif of_the_sheet:
         raise UsageError("--pdf, --trace and --map are for an incident sheet: choose its finding with --incident")
     else:
-        checks.report_check(folder, to, base_url)
+        checks.write_report_of_check(folder, to, base_url)
 
 
 def diff(

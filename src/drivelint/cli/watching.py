@@ -10,8 +10,8 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import options
-from drivelint.cli.console import name_earlier_result_on_failure, run_interruptible, say_nothing_kept
 from drivelint.cli.console import progress as bar
+from drivelint.cli.console import run_interruptible, say_earlier_folder_on_failure, say_nothing_kept
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import terminal_safe_json
@@ -167,7 +167,7 @@ def watch(
         allow_origin=tuple(allow_origin or ()),
     )
     emit, interruption = _Printer(), WatchInterruption()
-    with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with say_earlier_folder_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         try:
             code = run_interruptible(
                 lambda: _watch_and_check(settings, work, emit, interruption, progress, overwrite=overwrite),

@@ -77,7 +77,7 @@ def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
         try:
             run.prepare()
             run.judge_rule(binding)
-            run.conclude()
+            run.aggregate_pending_steps()
         finally:
             temp_tables.drop_tables(con)
         plans += run.plans

@@ -27,18 +27,18 @@ LEAST_RULES_FOR_TWO_CONNECTIONS: Final = 16
 """From this number of built-in rules on, rules are judged on two connections."""
 LEAST_STEPS_FOR_TWO_CONNECTIONS: Final = 2_000
 """Below this number of steps, one connection is used: the tables of a second one would cost more than it saves."""
-MOST_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
+TOO_MANY_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
 """From this number of steps on, one connection is used: one statement then uses all cores, and two would need twice the memory."""
 LEAST_STEPS_FOR_A_FIRST_PASS: Final = 2_000
 """From this number of steps on, there is a first pass (see `invariant`); for fewer steps, it costs more than it saves."""
 MOST_PENDING_ROWS: Final = 50_000
-"""If there are more judged steps than this, `conclude` is called before the next rule."""
+"""If there are more judged steps than this, `aggregate_pending_steps` is called before the next rule."""
 
 
-class _StepsToJudge(NamedTuple):
+class _StepSelectionAndCount(NamedTuple):
     """Which steps of an invariant's grid are judged one by one, and their number (-1: unknown)."""
 
-    selection: invariant.StepsToJudge
+    selection: invariant.StepSelection
     n: int
 
 
@@ -71,8 +71,8 @@ class Evaluation:
     _n_pending: int = field(default=0, init=False)
     _may_be_double: bool = field(default=False, init=False)
     """Whether there may be several pending steps with the same key."""
-    _rules_to_conclude_separately: set[int] = field(default_factory=set, init=False)
-    """The numbers of the rules whose steps are concluded separately, because `conclude` failed with several rules."""
+    _rules_to_aggregate_separately: set[int] = field(default_factory=set, init=False)
+    """The numbers of the rules whose steps are aggregated separately, because `aggregate_pending_steps` failed with several rules."""
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all rules at once."""
@@ -83,11 +83,11 @@ class Evaluation:
         n_steps = self._count_rows("SELECT count(*) FROM step")
         if (
             len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
-            and LEAST_STEPS_FOR_TWO_CONNECTIONS <= n_steps < MOST_STEPS_FOR_TWO_CONNECTIONS
+            and LEAST_STEPS_FOR_TWO_CONNECTIONS <= n_steps < TOO_MANY_STEPS_FOR_TWO_CONNECTIONS
         ):
             todo = deque(binding for binding in todo if binding not in shipped)
             self._judge_on_two_connections(shipped)
-        self._judge_queue_and_conclude(todo)
+        self._judge_queue_and_aggregate(todo)
         if self.release:
             self.release()
         self._run_statements("blind", "closed")
@@ -112,7 +112,7 @@ class Evaluation:
             helper = replace(self, con=other)
             helped = pool.submit(helper.judge_from_queue, todo)
             try:
-                self._judge_queue_and_conclude(todo)
+                self._judge_queue_and_aggregate(todo)
                 helped.result()
                 for table in temp_tables.OUTCOME_TABLES:
                     store.insert(self.con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
@@ -124,15 +124,15 @@ class Evaluation:
     def judge_from_queue(self, todo: deque[Binding]) -> None:
         """Judge rules from a shared queue; the other `Evaluation` collects the outcomes."""
         self.prepare()
-        self._judge_queue_and_conclude(todo)
+        self._judge_queue_and_aggregate(todo)
 
-    def _judge_queue_and_conclude(self, todo: deque[Binding]) -> None:
+    def _judge_queue_and_aggregate(self, todo: deque[Binding]) -> None:
         """Judge by the rules of the queue until it is empty, and make outcomes of their steps."""
         self._judge_queue(todo)
         while self._pending:
             try:
                 with store.uniform_memory_errors():
-                    self.conclude()
+                    self.aggregate_pending_steps()
             except duckdb.Error:
                 self._judge_queue(deque(self._discard_to_judge_separately(self._pending)))
 
@@ -142,7 +142,7 @@ class Evaluation:
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
             self.con.execute(f"DELETE FROM {table} WHERE list_contains(?, rule_no)", [numbers])
-        self._rules_to_conclude_separately.update(numbers)
+        self._rules_to_aggregate_separately.update(numbers)
         self._forget_pending()
         return again
 
@@ -154,32 +154,34 @@ class Evaluation:
             except IndexError:
                 return
             if (lost := self.limits.exceeded_limit(binding.rule.id)) is not None:
-                self._insert_error_verdicts(binding, lost, again=True)
+                self._insert_error_verdicts(binding, lost, was_skipped=True)
                 continue
             if self._has_no_occasion(binding):
                 continue
-            concludes = False
+            aggregates = False
             with self.limits.limit_statements(self.con, binding.rule.id, alone=self.is_only_connection) as held:
                 try:
                     with store.uniform_memory_errors():
                         self.judge_rule(binding)
-                        concludes = (
-                            binding.no in self._rules_to_conclude_separately or self._n_pending > MOST_PENDING_ROWS
+                        aggregates = (
+                            binding.no in self._rules_to_aggregate_separately or self._n_pending > MOST_PENDING_ROWS
                         )
-                        if concludes:
-                            self.conclude()
+                        if aggregates:
+                            self.aggregate_pending_steps()
                 except duckdb.Error as error:
                     failure = error
                 else:
                     continue
             self._pending = [other for other in self._pending if other is not binding]
-            if concludes:
+            if aggregates:
                 todo.extendleft(self._discard_to_judge_separately(self._pending))
             self._record_error(binding, failure, held.excess)
 
     def prepare(self) -> None:
         """Create the temporary tables, decide which rules need not run, and group the default grids once for all rules."""
-        self._n_todo, self._rules_outside_conditions = temp_tables.create_tables(self.con, self.bindings)
+        self._n_todo, self._rules_outside_conditions = temp_tables.create_tables_and_count_subjects(
+            self.con, self.bindings
+        )
         self._forget_pending()
         self._is_short = self._count_rows("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
         self._n_subjects = self._count_rows("SELECT count(*) FROM _subject")
@@ -190,14 +192,14 @@ class Evaluation:
         self._has_doubts = "doubt" not in self._empty_tables
         self._has_sensors = bool(self._count_rows("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:
-            temp_tables.create_doubts(self.con, self.bindings)
+            temp_tables.create_table_of_doubted_steps(self.con, self.bindings)
         quick = [b for b in self.bindings if self._has_first_pass(b)]
         if quick:
             objects = any(binding.rule.per_object for binding in quick)
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
-        """Judge the steps by one rule; `conclude` makes outcomes of the judged steps."""
+        """Judge the steps by one rule; `aggregate_pending_steps` makes outcomes of the judged steps."""
         self._pending.append(binding)
         if binding.rule.kind == "invariant":
             self._judge_invariant(binding)
@@ -226,7 +228,7 @@ class Evaluation:
         # if there are as many rows as steps in the grid, no key can be repeated
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
-    def _settle_groups(self, binding: Binding) -> _StepsToJudge | None:
+    def _settle_groups(self, binding: Binding) -> _StepSelectionAndCount | None:
         """Settle groups without judging each step; return the remaining steps, or None if there are none."""
         rule, partial = binding.rule, self._skips_some_subjects(binding)
         if rule.per_profile:
@@ -244,11 +246,11 @@ class Evaluation:
             near = f"FROM _group JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND clean AND is_near_miss(margin, near_margin)"
             if self.keep_measure_series and not self._may_skip_rest(self._count_rows(f"SELECT count(*) {near}")):
                 self._execute(invariant.first_pass_measure_series_sql(rule), binding)
-            return None if self._may_skip_rest(n_steps) else _StepsToJudge("unsettled", n_steps)
+            return None if self._may_skip_rest(n_steps) else _StepSelectionAndCount("unsettled", n_steps)
         if "applies" in rule.sections or not self._is_short:
             n_steps = self._execute(invariant.steps_to_judge_sql(rule, partial, self._check_engagement), binding)
-            return None if self._may_skip_rest(n_steps) else _StepsToJudge("asked", -1)
-        return _StepsToJudge("all", -1)
+            return None if self._may_skip_rest(n_steps) else _StepSelectionAndCount("asked", -1)
+        return _StepSelectionAndCount("all", -1)
 
     def _judge_at_references(self, binding: Binding) -> None:
         rule = binding.rule
@@ -267,7 +269,7 @@ class Evaluation:
         )
         self._may_be_double = True
 
-    def conclude(self) -> None:
+    def aggregate_pending_steps(self) -> None:
         """Aggregate the pending steps to outcomes, failing stretches, measure series and margins, for all pending rules at once."""
         kinds = {binding.rule.kind == "invariant" for binding in self._pending}
         if not self._may_skip_rest(self._n_pending):
@@ -334,9 +336,9 @@ class Evaluation:
             self._insert_error_verdicts(binding, "rule_error", f"rule {binding.rule.id}: {str(error).splitlines()[0]}")
 
     def _insert_error_verdicts(
-        self, binding: Binding, code: str, detail: str | None = None, *, again: bool = False
+        self, binding: Binding, code: str, detail: str | None = None, *, was_skipped: bool = False
     ) -> None:
-        values = {"no": binding.no, "code": code, "told": detail, "again": again, "rule": binding.rule.id}
+        values = {"no": binding.no, "code": code, "told": detail, "again": was_skipped, "rule": binding.rule.id}
         self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_s})
 
 

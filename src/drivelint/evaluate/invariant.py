@@ -15,7 +15,7 @@ from drivelint.sql.statements import statement
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-StepsToJudge = Literal["all", "unsettled", "asked"]
+StepSelection = Literal["all", "unsettled", "asked"]
 """The steps to judge: all of a rule's grid, those of the groups that the first pass did not settle, or those of the table `_asked`."""
 
 
@@ -90,7 +90,7 @@ def steps_to_judge_sql(rule: Rule, skips_subjects: bool, check_engagement: bool)
     return statement("judging/asked", grid=_grid_sql(rule, skips_subjects, False, check_engagement))
 
 
-def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, steps: StepsToJudge) -> str:
+def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, steps: StepSelection) -> str:
     """Return the SQL that judges these steps of the grid and appends them to `_judged`."""
     same_key = ""
     if rule.per_object:
@@ -100,7 +100,7 @@ def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, s
         same_key += " AND p.profile = v.profile"
     kept = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
-        numbered = _steps_with_episode("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
+        numbered = _steps_with_episode_sql("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
         kept = statement("judging/aged", steps_with_episode=numbered)
     grid = "_step_to_judge AS (SELECT * FROM _asked)"
     if steps != "asked":
@@ -108,7 +108,7 @@ def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, s
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
 
-def _steps_with_episode(source: str) -> str:
+def _steps_with_episode_sql(source: str) -> str:
     return statement("judging/steps_with_episode", source=source)
 
 

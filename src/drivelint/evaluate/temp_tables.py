@@ -31,7 +31,9 @@ _QUANTITY_SCHEMA = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())
 _CREATE_STATEMENT = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
-def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
+def create_tables_and_count_subjects(
+    con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]
+) -> tuple[dict[int, int], set[int]]:
     """Create the temporary tables of an evaluation.
 
     Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions are met at no step of these subjects.
@@ -41,14 +43,14 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     # as Arrow tables, because binding a list as a parameter takes a tenth of a second
     store.insert(con, "_rule", _rule_rows(bindings))
     store.insert(con, "_needs", _required_signal_rows(bindings))
-    store.insert(con, "_allowed", _allowed_word_rows(bindings))
+    store.insert(con, "_allowed", _rows_of_allowed_condition_values(bindings))
     con.execute(statement("judging/todo"))
     sql = "SELECT rule_no, count(*), count(o.rule_no) FROM _todo t LEFT JOIN _outside o USING (rule_no, drive_id, ego_id) GROUP BY rule_no"
     counts = con.execute(sql).fetchall()
     return {int(no): int(n) for no, n, _ in counts}, {int(no) for no, n, n_outside in counts if n == n_outside}
 
 
-def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
+def create_table_of_doubted_steps(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
     """Create the table of the steps that rules must not judge, because a quantity that they use is doubtful there."""
     with store.registered(con, {"_rule_quantity": _rows_of_used_quantity_names(bindings)}):
         con.execute(statement("judging/doubted"))
@@ -90,7 +92,7 @@ def _rows_of_used_quantity_names(bindings: Sequence[Binding]) -> pa.Table:
     return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITY_SCHEMA)
 
 
-def _allowed_word_rows(bindings: Sequence[Binding]) -> pa.Table:
+def _rows_of_allowed_condition_values(bindings: Sequence[Binding]) -> pa.Table:
     """Return the words that each rule's law and conditions allow, and more general words, which may include an allowed one."""
     columns = ("rule_no", "code", "condition", "word")
     rows = []

@@ -21,7 +21,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import errors_for_verdict, sensitivity_of_check, verdict_sensitivity
+from drivelint.explain.sensitivity import errors_with_default_samples, sensitivity_of_check, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
-    from drivelint.explain.model import Change, Row, Sensitivity, Step
+    from drivelint.explain.model import NearestChange, Row, Sensitivity, Step
     from drivelint.explain.sandbox import Sandbox
     from drivelint.explain.target import Target
     from drivelint.result.request import RunRequest
@@ -91,7 +91,7 @@ def explain(request: ExplainRequest) -> Explanation:
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _deciding_time_ns(target, series, now)
-        parts = evidence.requirement_parts(case.rule, target, sandbox, case.params, decides)
+        parts = evidence.required_value_parts(case.rule, target, sandbox, case.params, decides)
         missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
         condition = (
             unknown_condition_column(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
@@ -99,7 +99,7 @@ def explain(request: ExplainRequest) -> Explanation:
         rows = evidence.rows_read_by_rule(
             case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
         )
-        changes: list[Change] = []
+        changes: list[NearestChange] = []
         sensitivity = None
         if not lacks_signal(row):
             changes, sensitivity = _changes_and_sensitivity(
@@ -130,7 +130,7 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=changes,
         sensitivity=sensitivity,
         source=source,
-        notes=[*_notes(case, now), *_notes_on_removed_ends(of_drive, row["reason_code"])],
+        notes=[*_notes_on_changes_since_run(case, now), *_notes_on_removed_ends(of_drive, row["reason_code"])],
     )
 
 
@@ -142,7 +142,7 @@ def _changes_and_sensitivity(
     *,
     errors: MeasurementErrors,
     exit_stack: ExitStack,
-) -> tuple[list[Change], Sensitivity | None]:
+) -> tuple[list[NearestChange], Sensitivity | None]:
     """Return the least changes of the rule's numbers that change the verdict, and the verdict's sensitivity to measurement errors.
 
     `whole_sandbox`: a sandbox with the whole drive, on which the verdict is `verdict`. The sensitivity is None if no copies were requested.
@@ -152,7 +152,7 @@ def _changes_and_sensitivity(
     sensitivity = None
     if context.rule.version == row["rule_version"] and verdict == row["verdict"]:
         sensitivity = sensitivity_of_check(context.target.worst_finding, errors)
-    of_verdict = errors_for_verdict(errors, row["verdict"])
+    of_verdict = errors_with_default_samples(errors, row["verdict"])
     if of_verdict.samples and sensitivity is None:
         sensitivity = verdict_sensitivity(context, part, of_verdict, span)
     return verdict_changes(context, sandbox, verdict), sensitivity
@@ -179,7 +179,7 @@ def _context_of_verdict(run_options: RunRequest, target: Target, rules: pa.Table
 def _advice_on_unknown(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     """Return in words what the user can record or provide to decide an unknown verdict; None: nothing helps."""
     if row["cause_code"] is not None:
-        return reason_text.sentence_with_advice(
+        return reason_text.sentence_if_it_has_advice(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
         )
     return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(row["reason_code"])
@@ -193,7 +193,7 @@ def _deciding_time_ns(target: Target, series: list[Step], verdict: str) -> int |
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 
-def _notes(context: VerdictContext, verdict: str) -> list[str]:
+def _notes_on_changes_since_run(context: VerdictContext, verdict: str) -> list[str]:
     notes = []
     version, before = context.target.verdict_row["rule_version"], context.target.verdict["verdict"]
     if context.rule.version != version:

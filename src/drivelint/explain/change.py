@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.explain.model import Change
+from drivelint.explain.model import NearestChange
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator, Sequence
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from drivelint.explain.sandbox import Sandbox
     from drivelint.explain.verdict_context import VerdictContext
 
-    Search = Generator[Sequence[float], dict[float, str], Change]
+    Search = Generator[Sequence[float], dict[float, str], NearestChange]
 
-SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
+RELATIVE_SEARCH_DISTANCES: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
-_NEAR_FACTORS: Final = 3
+_N_NEAR_DISTANCES: Final = 3
 """The number of distances that are judged first, because most changes of a verdict occur there."""
 _LEAST_HALVINGS_OF_INTERVAL: Final = 8
 _MOST_HALVINGS_OF_INTERVAL: Final = 12
-_LARGEST_INTERVAL_SHARE: Final = 0.005
+_RELATIVE_SEARCH_TOLERANCE: Final = 0.005
 """After the least number of halvings, the interval in which the verdict changes is halved until it is at most this share of the value.
 
 A value is rounded by at most this share."""
@@ -48,7 +48,7 @@ class _VariedNumber(NamedTuple):
     halvings: int
 
 
-def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
+def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[NearestChange]:
     """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative change first.
 
     The tables of `sandbox` that are derived from profiles are not valid afterwards.
@@ -109,9 +109,9 @@ def _verdicts_with_profiles(
 
 def _search_changes(
     numbers: Sequence[_VariedNumber], verdict: str, judge: Callable[[Sequence[tuple[_VariedNumber, float]]], list[str]]
-) -> list[Change]:
+) -> list[NearestChange]:
     """Return the nearest change of each number. `judge` returns the verdict for each number and value."""
-    changes: list[Change] = []
+    changes: list[NearestChange] = []
     running: list[tuple[_VariedNumber, Search, dict[float, str] | None]] = [
         (n, _search_nearest_change(n, verdict), None) for n in numbers
     ]
@@ -134,13 +134,13 @@ def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
     least = 0.0 if number.now >= 0 else -math.inf  # keep a number that is not negative at 0 or more
     sides = [_values_to_try(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
-    none = Change(number.name, number.description, number.unit, number.now, None, None, False, low, high)
+    none = NearestChange(number.name, number.description, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
     verdicts: dict[float, str] = {}
-    for n in range(len(SEARCH_FACTORS)):
-        if n in {0, _NEAR_FACTORS}:
-            verdicts |= yield [v for values in sides for v in values[n : _NEAR_FACTORS if n == 0 else None]]
-        edges: list[Change] = []
+    for n in range(len(RELATIVE_SEARCH_DISTANCES)):
+        if n in {0, _N_NEAR_DISTANCES}:
+            verdicts |= yield [v for values in sides for v in values[n : _N_NEAR_DISTANCES if n == 0 else None]]
+        edges: list[NearestChange] = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
                 continue
@@ -157,7 +157,9 @@ def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
 
 def _values_to_try(number: _VariedNumber, scale: float, least: float) -> list[float]:
     """Return the values to try on one side, the nearest first."""
-    reached = dict.fromkeys(min(number.maximum, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
+    reached = dict.fromkeys(
+        min(number.maximum, max(least, number.now + scale * factor)) for factor in RELATIVE_SEARCH_DISTANCES
+    )
     return [value for value in reached if value != number.now]
 
 
@@ -173,7 +175,7 @@ def _nearest_changing_value(
     near, far = (values[index - 1] if index else number.now), values[index]
     becomes = verdicts[far]
     for n in range(0, _MOST_HALVINGS_OF_INTERVAL, number.halvings):
-        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _LARGEST_INTERVAL_SHARE * abs(far):
+        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _RELATIVE_SEARCH_TOLERANCE * abs(far):
             break
         halved = yield list(_values_by_halving(near, far, number.halvings))
         for _ in range(number.halvings):
@@ -211,6 +213,6 @@ def _short_values_beyond(number: _VariedNumber, far: float) -> list[float]:
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _LARGEST_INTERVAL_SHARE * abs(far)), 1e-9):
+        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _RELATIVE_SEARCH_TOLERANCE * abs(far)), 1e-9):
             found.append(value)
     return found

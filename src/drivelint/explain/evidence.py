@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.catalogue.requirement_parts import read_parts
-from drivelint.explain.model import RequirementPart, Step, TableRows
+from drivelint.catalogue.required_value_parts import read_parts
+from drivelint.explain.model import RequiredValuePart, Step, TableRows
 from drivelint.reasons import reason_text
 from drivelint.sql import store
 from drivelint.sql.syntax import with_values
@@ -22,7 +22,7 @@ MAX_ROWS: Final = 6
 """The number of rows that are shown of each table."""
 CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
-TRACK_TABLES: Final = ("pair",)
+TABLES_BY_TRACK_STEP: Final = ("pair",)
 """Tables with a row at each step of an object's track. After the end of the track, its last row is shown."""
 SERIES_PADDING_NS: Final = 30_000_000_000
 """Of a longer episode, this much time is shown before and after the explained interval."""
@@ -67,9 +67,9 @@ def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]
     ]
 
 
-def requirement_parts(
+def required_value_parts(
     rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
-) -> list[RequirementPart]:
+) -> list[RequiredValuePart]:
     """Return the summands of the requirement at one time; [] if the rule defines none, or their sum is not the requirement."""
     row, found = target.verdict_row, read_parts(rule)
     if found is None or row["required"] is None or t_ns is None:
@@ -80,7 +80,7 @@ def requirement_parts(
     where = " AND ".join(f"{name} = $_{name}" for name in keys)
     for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
         parts = [
-            RequirementPart(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None
+            RequiredValuePart(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None
         ]
         if parts and math.isclose(sum(part.value for part in parts), row["required"], rel_tol=1e-6, abs_tol=1e-6):
             return parts
@@ -117,14 +117,14 @@ def _rows_of_table(target: Target, sandbox: Sandbox, table: str, columns: list[s
     who = [column for column in _OBJECT_COLUMNS if column in columns and row["object_id"] is not None]
     if who:
         terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
-    at_time = {} if t_ns is None else _terms_of_time(columns, t_ns)
+    at_time = {} if t_ns is None else _where_terms_of_time(columns, t_ns)
     found = _select_rows(sandbox, table, columns, terms | at_time, row)
-    if not found.rows and at_time and who and table in TRACK_TABLES:
+    if not found.rows and at_time and who and table in TABLES_BY_TRACK_STEP:
         track = sandbox.query(f"SELECT t_ns FROM {table}{_where_clause(terms)} ORDER BY t_ns", _values_of_terms(terms))
         times = [each["t_ns"] for each in track]
         nearest = max((t for t in times if t < t_ns), default=min(times, default=None)) if t_ns is not None else None
         if nearest is not None:
-            found = _select_rows(sandbox, table, columns, terms | _terms_of_time(columns, nearest), row)
+            found = _select_rows(sandbox, table, columns, terms | _where_terms_of_time(columns, nearest), row)
             return found._replace(at_ns=nearest)
     return found
 
@@ -152,7 +152,7 @@ def _values_of_terms(terms: Mapping[str, list[Any]]) -> list[Any]:
     return [value for some in terms.values() for value in some]
 
 
-def _terms_of_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
+def _where_terms_of_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
     """Return the SQL term that selects the rows of one time, with its values."""
     for start, end in _SPAN_COLUMNS:
         if start in columns and end in columns:

@@ -30,7 +30,7 @@ class TableRows(NamedTuple):
     at_ns: int | None = None
 
 
-class RequirementPart(NamedTuple):
+class RequiredValuePart(NamedTuple):
     """One summand of a requirement."""
 
     name: str
@@ -38,7 +38,7 @@ class RequirementPart(NamedTuple):
     value: float
 
 
-class Change(NamedTuple):
+class NearestChange(NamedTuple):
     """The nearest value of one number that changes the verdict; `nearest_value` None: no such value between `low` and `high`."""
 
     name: str
@@ -88,13 +88,13 @@ class Explanation:
     asks: str | None
     """What the user can record or provide so that the verdict can be decided; None: nothing."""
     decides_ns: int | None
-    parts: list[RequirementPart]
+    parts: list[RequiredValuePart]
     """The summands of the verdict's `required`; empty: not known."""
     sql: dict[str, str]
     params: list[Row]
     rows: list[TableRows]
     series: list[Step]
-    changes: list[Change]
+    changes: list[NearestChange]
     sensitivity: Sensitivity | None
     source: str
     """The source of the numbers: the kept database, or the log."""

@@ -92,7 +92,7 @@ class Sandbox:
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
-        return self._judge_settings({self._rule.id: params})[self._rule.id]
+        return self._judge_settings_with_retry({self._rule.id: params})[self._rule.id]
 
     def judge_each(self, params_of_runs: Sequence[Mapping[str, object]]) -> list[Judgement | None]:
         """Judge by the rule with each of these settings of parameters; None for an invalid setting, such as a negative window.
@@ -102,11 +102,11 @@ class Sandbox:
         valid = [no for no, params in enumerate(params_of_runs) if self._are_params_valid(params)]
         found: dict[str, Judgement] = {}
         for some in _batches(valid, self._at_once):
-            found |= self._judge_settings({f"{self._rule.id}~{no}": params_of_runs[no] for no in some})
+            found |= self._judge_settings_with_retry({f"{self._rule.id}~{no}": params_of_runs[no] for no in some})
         return [found.get(f"{self._rule.id}~{no}") for no in range(len(params_of_runs))]
 
-    def _judge_settings(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
-        return self._memory.run_job(lambda _con: self._judgements(params_by_name))
+    def _judge_settings_with_retry(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+        return self._memory.run_job(lambda _con: self._judge_settings_once(params_by_name))
 
     def _are_params_valid(self, params: Mapping[str, object]) -> bool:
         try:
@@ -122,10 +122,10 @@ class Sandbox:
         return [
             judged
             for some in _batches(columns_and_values, self._at_once)
-            for judged in self._judged_profiles(params, profile, some)
+            for judged in self._judge_profiles_at_once(params, profile, some)
         ]
 
-    def _judged_profiles(
+    def _judge_profiles_at_once(
         self, params: Mapping[str, object], profile: str, columns_and_values: Sequence[tuple[str, float]]
     ) -> list[Judgement]:
         names = [f"{profile}~{no}" for no in range(len(columns_and_values))]
@@ -145,7 +145,7 @@ class Sandbox:
             for name in names
         ]
 
-    def _judgements(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+    def _judge_settings_once(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
         """Judge by the rule with each setting of parameters in `params_by_name`, and return the judgements by name."""
         for table in _RESULT_TABLES:
             self.con.execute(f"DELETE FROM {table}")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
-def errors_for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
+def errors_with_default_samples(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
     """Return the errors with a number of copies: 10 for an unknown verdict, which small errors seldom decide, else 100."""
     return errors if errors.samples is not None else replace(errors, samples=10 if verdict == "unknown" else 100)
 

@@ -67,7 +67,7 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
     if meant := [i for i in ids if i.startswith(name)]:
         exact = name if name in meant else _only_match(name, meant, "findings")
         finding = next(row for row in findings if row["finding_id"] == exact)
-        row = min(_verdicts_of_finding(finding, verdicts), key=_sort_key)
+        row = min(_verdicts_of_finding(finding, verdicts), key=_worst_first_key)
         return Target(row, finding, _other_verdicts(row, verdicts), finding)
     rule, _, drive = name.partition("@")
     rule = _rule_of_name(rule, sorted({row["rule_id"] for row in verdicts}), len(one_finding_per_event(findings)))
@@ -75,8 +75,8 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
     if drive:
         drive = _complete_name(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
         rows = [row for row in rows if row["drive_id"] == drive]
-    row = min(_matching_verdicts(rows, verdict_filter, result.start_times), key=_sort_key)
-    return Target(row, None, _other_verdicts(row, verdicts), _worst_finding(row, findings))
+    row = min(_matching_verdicts(rows, verdict_filter, result.start_times), key=_worst_first_key)
+    return Target(row, None, _other_verdicts(row, verdicts), _finding_with_worst_step(row, findings))
 
 
 def _verdicts_of_finding(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
@@ -96,7 +96,7 @@ def _verdicts_of_finding(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
     return exact or rows
 
 
-def _worst_finding(row: Row, findings: Iterable[Row]) -> Row | None:
+def _finding_with_worst_step(row: Row, findings: Iterable[Row]) -> Row | None:
     """Return the finding that contains the worst step of a failed verdict; None for other verdicts."""
     same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id", "object_id", "t_worst_ns")
     return next((f for f in findings if row["verdict"] == "fail" and all(f[key] == row[key] for key in same)), None)
@@ -136,7 +136,7 @@ def _covers_time(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:
     return bool(row["t_start_ns"] - 1_000_000 <= t_ns <= row["t_end_ns"] + 1_000_000)
 
 
-def _sort_key(row: Row) -> tuple[Any, ...]:
+def _worst_first_key(row: Row) -> tuple[Any, ...]:
     """Return a sort key that puts the worst verdict first: by kind of verdict, then by margin, name and time."""
     margin = row["margin"]
     return (

@@ -24,7 +24,15 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-__all__ = ["ComparedFinding", "Difference", "Gate", "GateInputs", "Waiver", "compare_results", "refuse_own_baseline"]
+__all__ = [
+    "ComparedFinding",
+    "Difference",
+    "Gate",
+    "GateInputs",
+    "Waiver",
+    "compare_results",
+    "refuse_to_overwrite_baseline",
+]
 
 
 @dataclass(frozen=True)
@@ -59,7 +67,7 @@ class GateInputs:
             said += waivers.read(settings_file, only_waivers=False)
         if baseline is None and not said and confidence is None:
             return None
-        refuse_own_baseline(baseline, out)
+        refuse_to_overwrite_baseline(baseline, out)
         if baseline is None:
             return cls(today, waivers=tuple(said), confidence=confidence)
         return cls(today, load(baseline), baseline.resolve().name, tuple(said), confidence)
@@ -67,7 +75,7 @@ class GateInputs:
     def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: the difference from the baseline, the applied waivers, and the findings that are only
         possible."""
-        stated, waived = waivers.apply(self.waivers, result, self.today)
+        stated, waived = waivers.states_and_matches(self.waivers, result, self.today)
         difference = None
         if self.baseline is not None:
             difference = diff.compare(self.baseline, result, self.baseline_name, "this result")
@@ -79,7 +87,7 @@ class GateInputs:
         return replace(result, gate=Gate(today, difference, stated, waived, self.confidence, tuple(possible)))
 
 
-def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
+def refuse_to_overwrite_baseline(baseline: Path | None, out: Path | None) -> None:
     """Raise `UsageError` if the run would overwrite its own baseline."""
     if baseline is not None and out is not None and baseline.resolve() == out.resolve():
         raise UsageError(

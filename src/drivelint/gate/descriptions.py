@@ -119,7 +119,7 @@ def difference_text(
         waived=gate.waived if gate else {},
         groups=unknowns_by_reason(difference.new_unknowns),
         n_findings=n_findings,
-        surplus_rows_sentence=surplus_rows_sentence,
+        surplus_rows_sentence=more_rows_than_findings_sentence,
         exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )
@@ -187,7 +187,7 @@ def finding_line(entry: ComparedFinding) -> str:
     return f"{head}{_other_verdict_phrase(entry)}"
 
 
-def surplus_rows_sentence(entries: Sequence[ComparedFinding]) -> str:
+def more_rows_than_findings_sentence(entries: Sequence[ComparedFinding]) -> str:
     """Return a sentence that explains why there are more rows than findings; '' if there are not."""
     left_out = [entry for entry in entries if entry.event_id != entry.finding_id]
     is_of_profiles = any(entry.profile is not None for entry in left_out)
@@ -236,7 +236,7 @@ def waiver_reason_phrase(waiver: Waiver) -> str:
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
 
-def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
+def why_gate_excludes(gate: Gate | None, finding_id: str) -> str:
     """Return why a finding does not gate: its waiver, else the baseline, else its low confidence; '' if the gate has no reason."""
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
@@ -251,7 +251,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
 
 def why_not_gating(result: Result, row: Row, rule: Row | None) -> str:
     """Return why a finding or a failed verdict does not gate; '' if it gates. `rule`: its row of the table `rule`."""
-    if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
+    if "finding_id" in row and (reason := why_gate_excludes(result.gate, row["finding_id"])):
         return reason
     is_new = "finding_id" in row and result.gate is not None and result.gate.status_at_gate(row["finding_id"]) == "new"
     new = "new, " if is_new else ""

@@ -96,7 +96,7 @@ def _entries_of_drive(
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
-            said = LookupResult("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
+            said = VerdictAndReason("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
             entries.append(_compared_finding("changed", now, was, new_lookup, said))
         else:
             said = base_lookup.verdict_at(base_id, now)
@@ -109,7 +109,7 @@ def _entries_of_drive(
     for was in (each for j, each in enumerate(theirs) if j not in told):
         wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
         if wholes:
-            said = LookupResult("fail", f"it now contains the earlier finding {was.row['finding_id']}")
+            said = VerdictAndReason("fail", f"it now contains the earlier finding {was.row['finding_id']}")
             gone.append(_compared_finding("changed", ours[wholes[0]], was, new_lookup, said))
         else:
             said = _outcome_with_rule_note(new_lookup.verdict_at(drive_id, was), was, base_lookup, new_lookup)
@@ -118,8 +118,8 @@ def _entries_of_drive(
 
 
 def _outcome_with_rule_note(
-    outcome: LookupResult, finding: TimedFinding, base_lookup: ResultLookup, new_lookup: ResultLookup
-) -> LookupResult:
+    outcome: VerdictAndReason, finding: TimedFinding, base_lookup: ResultLookup, new_lookup: ResultLookup
+) -> VerdictAndReason:
     """Return the outcome, with a note added if the rule or its parameters differ between the results."""
     a, b = (lookup.rules.get(finding.row["rule_id"]) for lookup in (base_lookup, new_lookup))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
@@ -138,7 +138,7 @@ def _matched_finding(now: TimedFinding, was: TimedFinding, new_lookup: ResultLoo
     if max(abs(now.start_s - was.start_s), abs(now.end_s - was.end_s)) > INTERVAL_TOLERANCE_S:
         notes.append(f"{now.start_s:.2f} s to {now.end_s:.2f} s, was {was.start_s:.2f} s to {was.end_s:.2f} s")
     return _compared_finding(
-        "changed" if notes else "unchanged", now, was, new_lookup, LookupResult("fail", "; ".join(notes))
+        "changed" if notes else "unchanged", now, was, new_lookup, VerdictAndReason("fail", "; ".join(notes))
     )
 
 
@@ -156,7 +156,7 @@ def _is_less(now: float | None, was: float | None) -> bool:
 
 
 def _base_only_finding(
-    was: TimedFinding, drive_id: str, outcome: LookupResult, base_lookup: ResultLookup
+    was: TimedFinding, drive_id: str, outcome: VerdictAndReason, base_lookup: ResultLookup
 ) -> ComparedFinding:
     """Return the entry of a finding that only the base result has. Its status is `fixed` only if the new result judged the rule there as
     kept or not applicable."""
@@ -167,7 +167,11 @@ def _base_only_finding(
 
 
 def _compared_finding(
-    standing: str, finding: TimedFinding, base_finding: TimedFinding | None, lookup: ResultLookup, outcome: LookupResult
+    standing: str,
+    finding: TimedFinding,
+    base_finding: TimedFinding | None,
+    lookup: ResultLookup,
+    outcome: VerdictAndReason,
 ) -> ComparedFinding:
     same = ("finding_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "margin", "unit")
     return ComparedFinding(
@@ -239,7 +243,7 @@ def _verdict_counts(result: Result) -> dict[Any, Counter[str]]:
     return verdict_counts
 
 
-class LookupResult(NamedTuple):
+class VerdictAndReason(NamedTuple):
     """The verdict of a result at a time, and its reason. The verdict is `none` if the rule was not judged there."""
 
     verdict: str
@@ -285,7 +289,7 @@ class ResultLookup:
         """Return whether a rule is stable in this result."""
         return rule_id in self.rules and self.rules[rule_id]["status"] == "stable"
 
-    def verdict_at(self, drive_id: str | None, finding: TimedFinding) -> LookupResult:
+    def verdict_at(self, drive_id: str | None, finding: TimedFinding) -> VerdictAndReason:
         """Return the verdict of this result at the time and place of a finding of another result.
 
         `drive_id`: the drive's id in this result. The verdicts pass and not applicable count only where ego and object are recorded.
@@ -296,11 +300,11 @@ class ResultLookup:
         assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _why_not_judged has returned a result
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and finding.worst_s > drive["duration_s"] + match.NEAR_S:
-            return LookupResult("none", "the log ends before the finding")
+            return VerdictAndReason("none", "the log ends before the finding")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
         rows = [each for each in rows if each["profile"] in {row["profile"], None}]
         if not rows:
-            return LookupResult("none", "the rule has no verdict")
+            return VerdictAndReason("none", "the rule has no verdict")
         there = [
             each for each in rows if self._concerns_object(each, row, drive_id) and _covers_time(each, finding, drive)
         ]
@@ -309,7 +313,7 @@ class ResultLookup:
             for each in there
             if (judged := self._outcome_at_finding(each, finding)).verdict in _VERDICTS_BY_WEIGHT
         ]
-        not_applicable = LookupResult(
+        not_applicable = VerdictAndReason(
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
         found = min(said, key=lambda each: _VERDICTS_BY_WEIGHT.index(each.verdict), default=not_applicable)
@@ -317,7 +321,7 @@ class ResultLookup:
             return missing
         return found
 
-    def _why_not_recorded(self, drive_id: str, finding: TimedFinding) -> LookupResult | None:
+    def _why_not_recorded(self, drive_id: str, finding: TimedFinding) -> VerdictAndReason | None:
         """Return an outcome if the ego or the object is not recorded at the finding; None: both are recorded."""
         for what in ("ego", "object"):
             actor = finding.row[f"{what}_id"]
@@ -325,42 +329,44 @@ class ResultLookup:
             if actor is None or match.is_recorded_during(stretches, finding):
                 continue
             if not stretches:
-                return LookupResult("none", f"{what} {actor} is not in this log, or has another id")
+                return VerdictAndReason("none", f"{what} {actor} is not in this log, or has another id")
             times = ", ".join(f"{start:.2f} s to {end:.2f} s" for start, end in stretches[:3])
             more = f" and {len(stretches) - 3} more times" if len(stretches) > 3 else ""
-            return LookupResult("unknown", f"{what} {actor} is recorded only from {times}{more}")
+            return VerdictAndReason("unknown", f"{what} {actor} is recorded only from {times}{more}")
         return None
 
-    def _outcome_at_finding(self, verdict: Row, finding: TimedFinding) -> LookupResult:
+    def _outcome_at_finding(self, verdict: Row, finding: TimedFinding) -> VerdictAndReason:
         """Return what a verdict means at the time of the finding. A verdict `fail` means a failure only in its failing stretches."""
         if verdict["reason_code"].startswith(UNRECORDED_PREFIX):
-            return LookupResult("unknown", verdict["reason"])
+            return VerdictAndReason("unknown", verdict["reason"])
         if verdict["verdict"] != "fail":
-            return LookupResult(verdict["verdict"], verdict["reason"])
+            return VerdictAndReason(verdict["verdict"], verdict["reason"])
         mine = self.findings.get(verdict["drive_id"], ())
         alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(finding.row)]
         if any(match.gap_s(other, finding) <= match.NEAR_S for other in alike):
-            return LookupResult("fail", "the rule still fails, at another step or place")
+            return VerdictAndReason("fail", "the rule still fails, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
-            return LookupResult("pass", "the rule is kept at this time, but broken at another time of the same verdict")
+            return VerdictAndReason(
+                "pass", "the rule is kept at this time, but broken at another time of the same verdict"
+            )
         missing = verdict["n_expected"] - verdict["n_judged"]
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
-        return LookupResult("unknown", why)
+        return VerdictAndReason("unknown", why)
 
-    def _why_not_judged(self, drive_id: str | None, finding: Row) -> LookupResult | None:
+    def _why_not_judged(self, drive_id: str | None, finding: Row) -> VerdictAndReason | None:
         """Return the reason why the rule was not judged in the drive, as the result of a lookup; None: it was judged."""
         if drive_id is None:
-            return LookupResult("none", "the drive was not checked")
+            return VerdictAndReason("none", "the drive was not checked")
         drive, rule = self.drives[drive_id], self.rules.get(finding["rule_id"])
         if drive["status"] == "not_judged":
             why = f"the drive could not be judged: {drive['status_reason'] or 'no reason given'}"
-            return LookupResult("unknown", why)
+            return VerdictAndReason("unknown", why)
         if rule is None:
-            return LookupResult("none", "the rule was not run")
+            return VerdictAndReason("none", "the rule was not run")
         if finding["profile"] is not None and finding["profile"] not in rule["profiles"]:
-            return LookupResult("none", f"the profile {finding['profile']} was not run")
+            return VerdictAndReason("none", f"the profile {finding['profile']} was not run")
         if finding["ego_id"] not in self._egos[drive_id]:
-            return LookupResult("none", f"{ego_name(finding['ego_id'])} was not judged")
+            return VerdictAndReason("none", f"{ego_name(finding['ego_id'])} was not judged")
         return None
 
     def _concerns_object(self, verdict: Row, finding: Row, drive_id: str) -> bool:

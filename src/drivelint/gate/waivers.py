@@ -79,7 +79,9 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     return [_parse_waiver(table, file, place) for table, place in zip(tables, places, strict=True)]
 
 
-def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple[Waiver, ...], dict[str, int]]:
+def states_and_matches(
+    waivers: Sequence[Waiver], result: Result, today: date
+) -> tuple[tuple[Waiver, ...], dict[str, int]]:
     """Return the waivers with their state on the day `today`, and finding_id -> index of the first waiver that matches
     the finding and has not expired."""
     drives = {row["drive_id"]: row for row in result.drives.to_pylist()}

@@ -7,7 +7,7 @@ from collections import Counter
 from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
-from drivelint.catalogue.header import EXCUSES_TAG
+from drivelint.catalogue.header import EXCUSABLE_RULE_TAG
 from drivelint.incident.words import (
     SENSE_WORDS,
     amount_text,
@@ -64,7 +64,7 @@ def kept_rule_line(rule: Row, rows: Sequence[Row], span_ns: tuple[int, int], dri
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     said, about = quoted_title(rule), [_judged_times_text(rows, span_ns, drive_start_ns)]
-    if EXCUSES_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
+    if EXCUSABLE_RULE_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
         least = "at least " if row["cause_code"] == LOWER_BOUND_CAUSE else ""
         said = text_with_minus_signs(f"{rule['observes']}{whom} {least}{amount_text(row['observed'], row['unit'])}")

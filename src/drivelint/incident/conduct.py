@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.catalogue.header import CONTACT_TAG, EXCUSES_TAG
+from drivelint.catalogue.header import CONTACT_TAG, EXCUSABLE_RULE_TAG
 from drivelint.incident.breaches import broken_rule_line, kept_rule_line, quoted_title, reason_without_advice
 from drivelint.incident.fitting import UndecidedReason
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
@@ -70,8 +70,8 @@ def conduct_texts_and_counts(
             )
             for rule in broken
         ],
-        "kept": [lines[rule] for rule in kept if EXCUSES_TAG not in rules[rule]["tags"]],
-        "excused": [lines[rule] for rule in kept if EXCUSES_TAG in rules[rule]["tags"]],
+        "kept": [lines[rule] for rule in kept if EXCUSABLE_RULE_TAG not in rules[rule]["tags"]],
+        "excused": [lines[rule] for rule in kept if EXCUSABLE_RULE_TAG in rules[rule]["tags"]],
         "reasons": _undecided_reasons(undecided, rules),
     }
     return {

@@ -72,7 +72,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
         trace = read_trace(path, options)
     except TraceError as error:
         unread = model.File(name=name, bytes=size)
-        return model.Inspection(file=unread, content=_content_of_unread(path, options), problem=str(error))
+        return model.Inspection(file=unread, content=_content_of_unread_log(path, options), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
     mapping = None if format_title_and_ego(log["format"]) else request.mapping or log["format"]
     return model.Inspection(
@@ -95,7 +95,7 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
     return ExitCode.NOT_JUDGED if unfit else ExitCode.OK
 
 
-def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
+def _content_of_unread_log(path: Path, options: IngestOptions) -> model.Content:
     try:
         return file_content(path, None, [], has_reader=not may_be_mapped_table(path, options))
     except (TraceError, OSError):  # the reader has already reported this problem
@@ -117,7 +117,7 @@ def _inspect_drive(
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
-        classes=tracks.count_classes(actors),
+        classes=tracks.counts_by_actor_class(actors),
         egos=egos,
         ego_source=_ego_source_text(trace, request.ego),
         candidates=candidates,
@@ -175,7 +175,7 @@ def _egos_and_quality(
         }
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
-        never = advice.reasons_never_known(known.known_by_ego[ego_id], lacking)
+        never = advice.reasons_of_never_known_signals(known.known_by_ego[ego_id], lacking)
         cannot = advice.undecided_rules(rules, lacking, never)
         undecided = {rule.rule_id for rule in cannot}
         egos.append(

@@ -25,7 +25,9 @@ REASON_MISSING_ON_ROUTE: Final = {
 }
 
 
-def reasons_never_known(knowledge: Mapping[str, bool], reason_by_missing_signal: Mapping[str, str]) -> dict[str, str]:
+def reasons_of_never_known_signals(
+    knowledge: Mapping[str, bool], reason_by_missing_signal: Mapping[str, str]
+) -> dict[str, str]:
     """Return signal or condition -> reason, for those that are unknown at every step of the ego.
 
     `reason_by_missing_signal`: signal -> reason, for signals that the whole log or map lacks; its reasons take precedence.

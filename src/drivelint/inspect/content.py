@@ -86,7 +86,7 @@ def file_content(path: Path, mapping: str | None, notes: list[str], *, has_reade
 def _table_content(path: Path, head: bytes, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
     if mapping is not None and video_mapping.is_video_mapping(mapping):
         name, film = video_mapping.load(mapping)
-        return Content(sheets=[_film_sheet(path, film)], mapping=name, notes=notes)
+        return Content(sheets=[_video_detections_sheet(path, film)], mapping=name, notes=notes)
     if mapping is not None:
         name, loaded = mappings.load(mapping)
         return Content(sheets=[_mapped_sheet(path, loaded)], mapping=name, notes=notes)
@@ -146,7 +146,7 @@ def _mapped_sheet(path: Path, mapping: Mapping) -> Sheet:
     return Sheet(name=path.name, rows=rows, columns=columns)
 
 
-def _film_sheet(path: Path, film: VideoMapping) -> Sheet:
+def _video_detections_sheet(path: Path, film: VideoMapping) -> Sheet:
     """Return the columns of a table of video detections, first the columns that the mapping reads."""
     names = CsvSheet(path, TextLayout()).names
     read = {film.frames.column: ["time"]} | {

@@ -77,11 +77,11 @@ def _title_text(inspection: model.Inspection) -> Text:
     return Text(file.name, style="bold").append(f"  {', '.join(about)}", style="default")
 
 
-def _size_text(n: int) -> str:
+def _size_text(n_bytes: int) -> str:
     for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if n >= factor:
-            return f"{n / factor:.1f} {unit}"
-    return plural(n, "byte")
+        if n_bytes >= factor:
+            return f"{n_bytes / factor:.1f} {unit}"
+    return plural(n_bytes, "byte")
 
 
 def _table_of_lines(lines: Sequence[Line]) -> Table:

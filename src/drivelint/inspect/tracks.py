@@ -72,7 +72,7 @@ def actors(trace: Trace) -> list[Actor]:
     ]
 
 
-def count_classes(trace_actors: Sequence[Actor]) -> list[ClassCount]:
+def counts_by_actor_class(trace_actors: Sequence[Actor]) -> list[ClassCount]:
     """Return the counts of actors per class, the largest class first."""
     counts = [
         ClassCount(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 MOST_WIDTH_HEIGHT_PX: Final = (640, 480)
 """The greatest width and height of a picture."""
-MOST_PICTURE_BYTES: Final = 30_000
+LOWER_QUALITY_ABOVE_BYTES: Final = 30_000
 """A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
 _QUALITY, _LOW_QUALITY, _LEAST_QUALITY = 70, 35, 10
 _FORMATS: Final = ("JPEG", "PNG", "WEBP")
@@ -50,8 +50,8 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
     data = _jpeg_bytes(small, _QUALITY)
-    if len(data) > MOST_PICTURE_BYTES:
-        data = _jpeg_bytes(small, _LOW_QUALITY if len(data) < 2 * MOST_PICTURE_BYTES else _LEAST_QUALITY)
+    if len(data) > LOWER_QUALITY_ABOVE_BYTES:
+        data = _jpeg_bytes(small, _LOW_QUALITY if len(data) < 2 * LOWER_QUALITY_ABOVE_BYTES else _LEAST_QUALITY)
     return Jpeg(data, *small.size)
 
 

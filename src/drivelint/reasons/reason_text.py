@@ -88,11 +88,11 @@ def _sentence(
     return f"{text}: {_sentence_from_template(words.advice, arguments, start_ns, rule_texts)}" if words.advice else text
 
 
-def sentence_with_advice(
+def sentence_if_it_has_advice(
     code: str, arguments: Mapping[str, Any], start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None
 ) -> str | None:
     """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
-    nested = (sentence_with_advice(*each, start_ns, rule_texts) for each in _nested_reasons(arguments))
+    nested = (sentence_if_it_has_advice(*each, start_ns, rule_texts) for each in _nested_reasons(arguments))
     return _sentence(code, arguments, start_ns, rule_texts) if text_of(code, rule_texts).advice or any(nested) else None
 
 

@@ -54,7 +54,7 @@ class InputRecorder:
             or whole in self._written
             or whole in _IGNORED_FILES
             or (whole.startswith("/proc/self/") and whole.endswith("/schedstat"))
-            or self._is_own_or_output(os.path.realpath(whole))
+            or self._is_program_file_or_output(os.path.realpath(whole))
         ):
             return
         with self._lock:
@@ -89,13 +89,13 @@ class InputRecorder:
             return
         self._inside.busy = True
         try:
-            self._record_event(event, args, is_by_importer)
+            self._record_event_or_raise(event, args, is_by_importer)
         except Exception as error:  # noqa: BLE001 - no error may end the run
             self.trouble = f"{event}: {error!r}"
         finally:
             self._inside.busy = False
 
-    def _record_event(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:
+    def _record_event_or_raise(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:
         if event == NOT_REPEATABLE_EVENT:
             self.trouble = args[0]
         elif event == "tempfile.mkdtemp":
@@ -109,7 +109,7 @@ class InputRecorder:
             else:
                 self.record_state(path)
 
-    def _is_own_or_output(self, real_path: str) -> bool:
+    def _is_program_file_or_output(self, real_path: str) -> bool:
         return self.is_output(real_path) or any(
             is_at_or_below(real_path, folder) for folder in (*self._ours, *self._made)
         )

@@ -121,7 +121,7 @@ def _render_parts(template: str, **values: Any) -> list[str]:
         end_part=_PART_SEPARATOR,
         anchor=anchor,
         n_findings=n_findings,
-        surplus_rows_sentence=descriptions.surplus_rows_sentence,
+        surplus_rows_sentence=descriptions.more_rows_than_findings_sentence,
         **values,
     )
     return [part.strip("\n") for part in text.split(_PART_SEPARATOR)]

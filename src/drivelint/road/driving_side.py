@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 
-MOST_CARRIAGEWAY_GAP_M: Final = 2.0  # the largest gap between opposite lanes of one carriageway, as in lane_beside.sql
-MOST_RESERVATION_GAP_M: Final = 15.0  # the largest gap between the two carriageways of a road
+MOST_GAP_WITHIN_CARRIAGEWAY_M: Final = (
+    2.0  # the largest gap between opposite lanes of one carriageway, as in lane_beside.sql
+)
+MOST_GAP_BETWEEN_CARRIAGEWAYS_M: Final = 15.0  # the largest gap between the two carriageways of a road
 LEAST_OPPOSING_LENGTH_M: Final = 20.0  # shorter lanes beside each other are a corner or an error of the map
 DECISIVE_SHARE: Final = 2 / 3
 _MOST_OVERLAP_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
@@ -53,7 +55,7 @@ def side_driven_on(lanes_points: Sequence[Floats]) -> str | None:
     segments = _lane_segments(lanes_points)
     if not len(segments.lane):
         return None
-    for most_gap_m in (MOST_CARRIAGEWAY_GAP_M, MOST_RESERVATION_GAP_M):
+    for most_gap_m in (MOST_GAP_WITHIN_CARRIAGEWAY_M, MOST_GAP_BETWEEN_CARRIAGEWAYS_M):
         left, right = _opposing_lengths_m(segments, most_gap_m)
         if left + right >= LEAST_OPPOSING_LENGTH_M:
             decisive = DECISIVE_SHARE * (left + right)

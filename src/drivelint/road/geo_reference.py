@@ -29,11 +29,11 @@ _DEFAULT_PARAMETERS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_
 _COMPARED_DECIMALS: Final = 9
 """The number of decimals that are compared, because writers round the last ones: 0.1 mm on the ground, even for degrees."""
 _TANGENT_PLANE_PROJECTION: Final = "ortho"
-_LARGEST_LOCAL_M: Final = 100_000.0
+_LARGEST_LOCAL_COORDINATE_M: Final = 100_000.0
 _NEAR_EQUATOR_DEG: Final = 1.0
 _NEAR_POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
 _METRES_PER_DEGREE: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
-_GROUND_METRE_RANGE_M: Final = (0.4, 1.6)
+_GROUND_LENGTH_PER_METRE_RANGE: Final = (0.4, 1.6)
 """The range of the length on the ground (m) of one metre of a projection: Mercator's is 0.4 m at 66 degrees of latitude."""
 
 
@@ -94,12 +94,12 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     (longitude, latitude), (beside, above) = places.tolist()
     turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
     if (
-        not _GROUND_METRE_RANGE_M[0]
+        not _GROUND_LENGTH_PER_METRE_RANGE[0]
         < math.hypot(turned, above - latitude) * _METRES_PER_DEGREE
-        < _GROUND_METRE_RANGE_M[1]
+        < _GROUND_LENGTH_PER_METRE_RANGE[1]
     ):
         return "its unit is not the metre, or the coordinates are far outside its area"
-    local = max(abs(x), abs(y)) < _LARGEST_LOCAL_M and not _has_local_origin(frame.reference)
+    local = max(abs(x), abs(y)) < _LARGEST_LOCAL_COORDINATE_M and not _has_local_origin(frame.reference)
     if local and (abs(latitude) < _NEAR_EQUATOR_DEG or abs(latitude) > 90.0 - _NEAR_POLE_DEG):
         return (
             f"it is a placeholder: the coordinates are local, and it would place them at latitude {latitude:.3f}, "

@@ -92,7 +92,7 @@ def check_bounds(left: Floats, right: Floats) -> None:
 def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
     """Return the geometry of a lane with these bounds. Errors: `UnbuildableError` with the problem."""
     check_bounds(left, right)
-    left, right = _bounds_of_equal_size(left, right)
+    left, right = _bounds_of_equal_point_count(left, right)
     for keep_points in (_mask_of_distinct_points, _mask_without_backward_steps):
         keep = keep_points((left + right) / 2)
         left, right = left[keep], right[keep]
@@ -137,7 +137,7 @@ def _mask_without_backward_steps(centre: Floats) -> Mask:
     return forwards
 
 
-def _bounds_of_equal_size(left: Floats, right: Floats) -> tuple[Floats, Floats]:
+def _bounds_of_equal_point_count(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Return the bounds with equal numbers of points: unchanged if the numbers are equal, else at equal shares of their lengths."""
     if len(left) == len(right):
         return left, right

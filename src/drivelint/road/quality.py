@@ -30,7 +30,7 @@ class MapQuality:
         self.rows: list[dict[str, Any]] = []
         self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _EFFECTS_OF_UNKNOWN_WORDS}
         self._stand_ins = 0
-        self._sides_by_number = 0
+        self._n_sections_under_wrong_side = 0
 
     def posted_limit(self, limit_mps: float) -> float | None:
         """Return a speed limit (m/s) of the map; None, and count it, if it is netconvert's placeholder for a missing limit."""
@@ -39,9 +39,9 @@ class MapQuality:
         self._stand_ins += 1
         return None
 
-    def count_side_by_number(self) -> None:
+    def count_section_under_wrong_side(self) -> None:
         """Count an OpenDRIVE lane section whose lanes are all under `<left>` or all under `<right>`, with numbers of the other side."""
-        self._sides_by_number += 1
+        self._n_sections_under_wrong_side += 1
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
         """Return a word of the map in the vocabulary's spelling, whatever its case; None, and count it, if it is unknown."""
@@ -75,9 +75,9 @@ class MapQuality:
                 "limit: the limit is treated as unknown"
             )
             rows.append(_quality_row("invalid_speed", "warning", None, message, self._stand_ins))
-        if self._sides_by_number:
+        if self._n_sections_under_wrong_side:
             message = "lane sections list lanes under <left> or <right> whose numbers belong to the other side: the numbers are used"
-            rows.append(_quality_row("lane_side", "info", None, message, self._sides_by_number))
+            rows.append(_quality_row("lane_side", "info", None, message, self._n_sections_under_wrong_side))
         return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.arrays import Floats
-    from drivelint.scene.document import ActorText, Knots, MotionStep
+    from drivelint.scene.document import ActorEntry, Knots, MotionStep
     from drivelint.scene.road import Road
 
 DT_S: Final = 0.01
@@ -43,7 +43,7 @@ _LEAST_MOVING_MPS: Final = 0.3
 """Below this speed, the motion does not change the heading."""
 
 
-class Motion(NamedTuple):
+class MotionSamples(NamedTuple):
     """Samples of an actor: seconds, metres, radians, m/s; `push`: its acceleration along its heading, m/s2."""
 
     t: Floats
@@ -61,7 +61,7 @@ class Actor:
     """An actor and its motion."""
 
     name: str
-    text: ActorText
+    text: ActorEntry
     roads: Mapping[str, Road]
 
     @property
@@ -75,7 +75,7 @@ class Actor:
         length, width, height, *_ = [*self.text.size, None, None, None]
         return length, width, height
 
-    def motion(self, seconds: float) -> Motion:
+    def motion(self, seconds: float) -> MotionSamples:
         """Return the actor's motion, every `DT_S` from second 0 on. Errors: `UsageError` for an impossible path or step."""
         t: Floats = np.arange(round(seconds / DT_S) + 1).astype(np.float64) * DT_S
         if self.text.track:
@@ -94,7 +94,7 @@ class Actor:
         )
         return self._motion_of_poses(t, x, y, z, heading + slip)
 
-    def _motion_on_track(self, t: Floats) -> Motion:
+    def _motion_on_track(self, t: Floats) -> MotionSamples:
         times, x, y = np.array(self.text.track, float).T
         held = np.clip(t, times[0], times[-1])
         if len(times) < 2:
@@ -106,7 +106,7 @@ class Actor:
         yaw = np.interp(t, t[moving], along) if moving.any() else np.zeros(t.shape)
         return self._motion_of_poses(t, px, py, np.zeros(t.shape), yaw)
 
-    def _motion_of_poses(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> Motion:
+    def _motion_of_poses(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> MotionSamples:
         vx, vy = np.gradient(x, DT_S), np.gradient(y, DT_S)
         if self.text.heading is not None:
             given = self.text.heading
@@ -117,7 +117,7 @@ class Actor:
             yaw = yaw + math.pi
         push = np.gradient(vx * np.cos(yaw) + vy * np.sin(yaw), DT_S)
         ground = z if self.text.height is None else np.full(t.shape, float(self.text.height))
-        return Motion(t, x, y, ground, yaw, vx, vy, push)
+        return MotionSamples(t, x, y, ground, yaw, vx, vy, push)
 
     def _lanes_of_route(self) -> list[tuple[str, int]]:
         named = [self.text.lane] if self.text.lane else self.text.route

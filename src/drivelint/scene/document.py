@@ -36,7 +36,7 @@ class _StrictMapping(
     """A mapping of the document; only the names of its fields are allowed as keys."""
 
 
-class LaneText(_StrictMapping, frozen=True):
+class LaneEntry(_StrictMapping, frozen=True):
     """A lane as a mapping. Most lanes are written as a text instead: kind, width and outer mark."""
 
     kind: str = "driving"
@@ -63,7 +63,7 @@ class RoadThing(_StrictMapping, frozen=True):
     deep: float = 3.0
 
 
-class RoadText(_StrictMapping, frozen=True):
+class RoadEntry(_StrictMapping, frozen=True):
     """A road: a line, and lanes on both sides of it."""
 
     line: list[float | Numbers] = msgspec.field(default_factory=lambda: [1000.0])
@@ -74,9 +74,9 @@ class RoadText(_StrictMapping, frozen=True):
     """The road that this road continues, lane by lane."""
     kind: str = "rural"
     limit: str | list[tuple[float, str]] | None = "60 mph"
-    lanes: list[str | LaneText] = msgspec.field(default_factory=lambda: ["driving 3.5"])
+    lanes: list[str | LaneEntry] = msgspec.field(default_factory=lambda: ["driving 3.5"])
     """The lanes along the line, from the middle outwards: lanes 1, 2, ..."""
-    against: list[str | LaneText] = msgspec.field(default_factory=lambda: ["driving 3.5"])
+    against: list[str | LaneEntry] = msgspec.field(default_factory=lambda: ["driving 3.5"])
     """The lanes in the opposite direction, from the middle outwards: lanes -1, -2, ..."""
     middle: str | list[tuple[float, str]] = "broken"
     height: Knots = 0.0
@@ -90,7 +90,7 @@ class Crossroads(_StrictMapping, frozen=True):
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
     half: float = 12.0
     """Metres from the middle of the junction to the start of the arms."""
-    road: RoadText = RoadText(line=[200.0], kind="town", limit="30 mph")
+    road: RoadEntry = RoadEntry(line=[200.0], kind="town", limit="30 mph")
     things: dict[str, list[RoadThing]] = {}
     """Arm -> things on this arm alone."""
 
@@ -101,14 +101,14 @@ class Roundabout(_StrictMapping, frozen=True):
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
     radius: float = 20.0
     """The radius of the centre line of the ring's lane, in metres."""
-    road: RoadText = RoadText(line=[150.0], kind="town", limit="30 mph")
+    road: RoadEntry = RoadEntry(line=[150.0], kind="town", limit="30 mph")
 
 
 class RoadLayout(_StrictMapping, frozen=True):
     """Roads that belong together, and the turns that connect them."""
 
     traffic: Side | Literal["both"] = "right"
-    roads: dict[str, RoadText] = {}
+    roads: dict[str, RoadEntry] = {}
     crossing: Crossroads | None = None
     roundabout: Roundabout | None = None
     turns: Literal["all"] | list[str] = []
@@ -152,7 +152,7 @@ class RecorderFaults(_StrictMapping, frozen=True):
     unknown: list[Literal["speed", "heading", "size", "width", "class"]] = []
 
 
-class ActorText(_StrictMapping, frozen=True):
+class ActorEntry(_StrictMapping, frozen=True):
     """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` defines where the actor is."""
 
     kind: str | None = "car"
@@ -190,7 +190,7 @@ class ActorText(_StrictMapping, frozen=True):
     faults: RecorderFaults = RecorderFaults()
 
 
-class SceneText(_StrictMapping, frozen=True, kw_only=True):
+class SceneEntry(_StrictMapping, frozen=True, kw_only=True):
     """A scene and its expected verdicts."""
 
     name: str
@@ -205,7 +205,7 @@ class SceneText(_StrictMapping, frozen=True, kw_only=True):
     lights: dict[str, list[tuple[float, str]]] = {}
     says: list[list[float | str | None]] = []
     """Events that the ego declares: [second, event] or [second, event, value]."""
-    actors: dict[str, ActorText]
+    actors: dict[str, ActorEntry]
     expect: dict[str, str]
     """Rule -> verdict, a reason code in brackets, and why: `unknown (no_width): the log has no width`."""
     line: int = 0
@@ -220,15 +220,15 @@ class SceneFile(_StrictMapping, frozen=True):
     all_fails: bool = False
     """Whether a critical or major fail of a stable rule is an error if it is not expected."""
     roads: dict[str, RoadLayout] = {}
-    scenes: list[SceneText] = []
+    scenes: list[SceneEntry] = []
 
 
 def read(path: Path) -> SceneFile:
     """Read a file of scenes, and the roads of the files that it names. Errors: `UsageError` with file and line."""
-    scene_file = _scene_file(path)
+    scene_file = _parse_scene_file(path)
     roads: dict[str, RoadLayout] = {}
     for name in scene_file.roads_from:
-        roads |= _scene_file(path.parent / name).roads
+        roads |= _parse_scene_file(path.parent / name).roads
     scene_file = msgspec.structs.replace(scene_file, roads=roads | scene_file.roads)
     names: dict[str, int] = {}
     for scene in scene_file.scenes:
@@ -242,7 +242,7 @@ def read(path: Path) -> SceneFile:
     return scene_file
 
 
-def _scene_file(path: Path) -> SceneFile:
+def _parse_scene_file(path: Path) -> SceneFile:
     try:
         loader = OnOffAsTextLoader(path.read_text(encoding="utf-8"))
         root = loader.get_single_node()

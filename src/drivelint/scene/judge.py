@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
-    from drivelint.scene.document import SceneText
+    from drivelint.scene.document import SceneEntry
     from drivelint.scene.scene import Scene
 
 NOT_JUDGED: Final = "refused"
@@ -183,7 +183,7 @@ def scene_test(
     return code
 
 
-def rules_to_judge_by(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
+def rules_to_judge_by(texts: Sequence[SceneEntry], *, all_fails: bool) -> list[str]:
     """Return the rules by which scenes are judged: the rules that they name, and with `all_fails` all stable rules."""
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 

@@ -15,7 +15,7 @@ from drivelint.scene.road import DRIVABLE_KINDS, Lane, LinePiece, Pose, Road, Tu
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.scene.document import Crossroads, LaneText, RoadLayout, RoadText, Roundabout
+    from drivelint.scene.document import Crossroads, LaneEntry, RoadEntry, RoadLayout, Roundabout
 
 _ANGLE_BY_COMPASS_POINT: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
@@ -71,7 +71,7 @@ def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int
     return name, number
 
 
-def _names_after_predecessors(texts: Mapping[str, RoadText]) -> list[str]:
+def _names_after_predecessors(texts: Mapping[str, RoadEntry]) -> list[str]:
     """Return the names of the roads, each after the road that it continues."""
     order: list[str] = []
     for name in texts:
@@ -90,7 +90,7 @@ def _names_after_predecessors(texts: Mapping[str, RoadText]) -> list[str]:
     return order
 
 
-def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
+def _road(name: str, text: RoadEntry, roads: Mapping[str, Road]) -> Road:
     if text.start is not None:
         x, y, heading = text.start
         start = Pose(x, y, math.radians(heading))
@@ -121,7 +121,7 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
     )
 
 
-def _refuse_unknown_words(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
+def _refuse_unknown_words(name: str, text: RoadEntry, lanes: Sequence[Lane]) -> None:
     """Raise `UsageError` for unknown words of things, lanes and marks."""
     for thing in text.things:
         what, _, rest = thing.kind.partition(" ")
@@ -139,7 +139,7 @@ def _refuse_unknown_words(name: str, text: RoadText, lanes: Sequence[Lane]) -> N
                 raise UsageError(f"road {name}: mark {mark!r}: {hint(word, _MARK_WORDS)}")
 
 
-def _lanes(texts: Iterable[str | LaneText], sign: int, length: float) -> list[Lane]:
+def _lanes(texts: Iterable[str | LaneEntry], sign: int, length: float) -> list[Lane]:
     texts = list(texts)
     driven = [n for n, text in enumerate(texts) if _lane_kind(text) in DRIVABLE_KINDS]
     lanes = []
@@ -156,7 +156,7 @@ def _lanes(texts: Iterable[str | LaneText], sign: int, length: float) -> list[La
     return lanes
 
 
-def _lane_kind(text: str | LaneText) -> str:
+def _lane_kind(text: str | LaneEntry) -> str:
     return text.split()[0] if isinstance(text, str) else text.kind
 
 
@@ -196,7 +196,10 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     for a, n, b, m in turns:
         before, behind = roads[a], roads[b]
         lane = before.lane(n)
-        start, end = before.lane_end_pose(lane, last=True), behind.lane_end_pose(behind.lane(m), last=False)
+        start, end = (
+            before.lane_exit_or_entry_pose(lane, is_exit=True),
+            behind.lane_exit_or_entry_pose(behind.lane(m), is_exit=False),
+        )
         width = min(lane.width, behind.lane(m).width)
         aside = width / 2  # the line is the lane's left border
         start, end = (
@@ -218,8 +221,8 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     return turn_roads
 
 
-def _arm_texts(crossroads: Crossroads) -> dict[str, RoadText]:
-    arms: dict[str, RoadText] = {}
+def _arm_texts(crossroads: Crossroads) -> dict[str, RoadEntry]:
+    arms: dict[str, RoadEntry] = {}
     for arm in crossroads.arms:
         angle = _ANGLE_BY_COMPASS_POINT[arm]
         start = [crossroads.half * math.cos(angle), crossroads.half * math.sin(angle), math.degrees(angle)]
@@ -230,9 +233,9 @@ def _arm_texts(crossroads: Crossroads) -> dict[str, RoadText]:
     return arms
 
 
-def _arm_and_ring_texts(roundabout: Roundabout) -> dict[str, RoadText]:
+def _arm_and_ring_texts(roundabout: Roundabout) -> dict[str, RoadEntry]:
     """Return the arms, and for each arm the part of the ring that begins after it; the ring is driven anticlockwise."""
-    ring: dict[str, RoadText] = {}
+    ring: dict[str, RoadEntry] = {}
     gap = 10.0 / roundabout.radius  # half of the part of the ring that an arm's junction occupies, as an angle
     angles = sorted((_ANGLE_BY_COMPASS_POINT[arm], arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))

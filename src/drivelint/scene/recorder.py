@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.arrays import Floats, Mask
-    from drivelint.scene.actor import Actor, Motion
+    from drivelint.scene.actor import Actor, MotionSamples
 
 _OTHER_SIDE: Final = {"left": "right", "right": "left"}
 _STANDING_MPS: Final = 0.05
@@ -95,7 +95,7 @@ def _mask_of_samples(actor: Actor, t: Floats) -> Mask:
 
 
 def _states_with_faults(
-    actor: Actor, motion: Motion, indices: Any, seed: int
+    actor: Actor, motion: MotionSamples, indices: Any, seed: int
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     faults = actor.text.faults
     t, x, y, yaw = (column[indices].copy() for column in (motion.t, motion.x, motion.y, motion.yaw))
@@ -120,7 +120,9 @@ def _mask_of_span(t: Floats, begin: float, end: float) -> Mask:
     return (t >= begin - 1e-6) & (t <= end + 1e-6)
 
 
-def _indicator_and_brake_light(actor: Actor, motion: Motion, indices: Any) -> tuple[list[str | None], list[str | None]]:
+def _indicator_and_brake_light(
+    actor: Actor, motion: MotionSamples, indices: Any
+) -> tuple[list[str | None], list[str | None]]:
     t, text = motion.t[indices], actor.text
     who = f"actor {actor.name}"
     if text.kind not in CLASSES_WITH_LIGHTS:

@@ -125,9 +125,9 @@ class Road:
             pose = end_of_piece(pose, piece)
         return pose
 
-    def lane_end_pose(self, lane: Lane, *, last: bool) -> Pose:
-        """Return the pose at which traffic leaves a lane (`last`) or enters it, in the direction of the traffic."""
-        s = self.length if last == (lane.number > 0) else 0.0
+    def lane_exit_or_entry_pose(self, lane: Lane, *, is_exit: bool) -> Pose:
+        """Return the pose at which traffic leaves a lane (`is_exit`) or enters it, in the direction of the traffic."""
+        s = self.length if is_exit == (lane.number > 0) else 0.0
         x, y, heading = (float(v) for v in self.places_at(np.array(s), self.lane_offset_m(lane, s)))
         return Pose(x, y, heading if lane.number > 0 else heading + math.pi)
 

@@ -22,7 +22,7 @@ from drivelint.sql.store import arrow_schemas
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.scene.document import RoadLayout, SceneText
+    from drivelint.scene.document import RoadLayout, SceneEntry
     from drivelint.scene.road import Road
 
 DEFAULT_CONDITIONS: Final = {"weather": "dry", "light": "day"}
@@ -36,7 +36,7 @@ MAP_FILE: Final = "map.xodr"
 class Scene:
     """A scene for right-hand or left-hand traffic."""
 
-    text: SceneText
+    text: SceneEntry
     layout: RoadLayout
     left: bool
     """Whether the traffic is left-hand."""
@@ -105,7 +105,7 @@ class Scene:
         return events
 
 
-def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, RoadLayout]) -> list[Scene]:
+def scenes_of(texts: Sequence[SceneEntry], layouts: Mapping[str, RoadLayout]) -> list[Scene]:
     """Return the scenes; a scene for both right-hand and left-hand traffic is returned twice, once for each."""
     scenes = []
     for text in texts:

@@ -112,7 +112,7 @@ class LiveServer:
             return
         newest = pc.max(states["t_ns"])
         there = tracks({**trace_window.tables, "actor_state": states.filter(pc.equal(states["t_ns"], newest))})
-        rows, _ = actor_boxes.select_box_rows(there)
+        rows, _ = actor_boxes.box_rows_and_step_interval(there)
         clock = self._clock_for(newest.as_py())
         at = clock.log_time_at(newest.as_py())
         boxes = b"".join(_message_contents(actor_boxes.scene_update_chunks(there, rows, clock, 0)))

@@ -231,7 +231,7 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
     ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
     for index, section in sections:
         if _has_numbers_of_other_side(section):
-            quality.count_side_by_number()
+            quality.count_section_under_wrong_side()
         sides = [side for side in ("left", "right") if section in ends[side]]
         start = number_attribute(section, "s")
         marks = tuple(m for centre in section.findall("center/lane") for m in _road_marks(centre, start, quality))

@@ -53,7 +53,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     if waiver is not None:
         why = f"{descriptions.waiver_reason_phrase(waiver)} ({waiver.where})"
     elif kind == "possible":
-        why = descriptions.reason_not_gating(gate, finding_id)
+        why = descriptions.why_gate_excludes(gate, finding_id)
     elif entry is not None and entry.standing == "new":
         why = f"before: {descriptions.other_verdict_words(entry)}: {entry.why}"
     elif entry is not None and entry.standing == "changed":

@@ -12,7 +12,7 @@ import pytest
 from drivelint.casefile import read_cases
 from drivelint.casefile.scene import case_database, complete_scene, insert_rows
 from drivelint.catalogue import load_rules
-from drivelint.catalogue.requirement_parts import parts_path, read_parts
+from drivelint.catalogue.required_value_parts import parts_path, read_parts
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 

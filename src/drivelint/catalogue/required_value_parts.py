@@ -29,7 +29,7 @@ KEY_COLUMNS: Final = ("drive_id", "ego_id", "t_ns", "object_id", "profile")
 _REQUIRED_COLUMNS: Final = frozenset({"drive_id", "ego_id", "t_ns"})
 
 
-class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class RequiredValueParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The parts of a rule's required value. `parts`: column of `sql` -> name of the part in words."""
 
     sql: str
@@ -51,7 +51,7 @@ def parts_path(rule: Rule) -> Path:
     return rule.path.with_suffix(".parts.toml")
 
 
-def read_parts(rule: Rule) -> RequirementParts | None:
+def read_parts(rule: Rule) -> RequiredValueParts | None:
     """Return the parts of a rule's required value; None without a parts file.
 
     Errors: `RuleError` for an invalid file, or a SELECT with a table, parameter or column that is not allowed.
@@ -60,7 +60,7 @@ def read_parts(rule: Rule) -> RequirementParts | None:
     if not file.is_file():
         return None
     try:
-        found = msgspec.toml.decode(file.read_bytes(), type=RequirementParts)
+        found = msgspec.toml.decode(file.read_bytes(), type=RequiredValueParts)
     except (msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise RuleError(f"{file}: {error}: write sql and [parts], as beside ukhc.r162.safe-distance-ahead") from error
     query = check_query(found.sql, str(file))
