@@ -134,6 +134,8 @@ def test_the_sheet_has_a_page_of_them(bag: Path, out: Path) -> None:
     page = sheet.read_text(encoding="utf-8")
     assert page.count("data:image/jpeg;base64,") == load_result(out).pictures.num_rows
     assert page.count("of 3</span>") == 3
+    assert "Faces and number plates are shown as they are in the log" in page, "whoever sends the page must think of it"
+    assert page.count("made smaller") == 1
     assert "img-src data:" in page
 
 

@@ -16,7 +16,7 @@ from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import PARTY_LETTERS
 from drivelint.incident.charts import charts_over_time, gap_and_finding_courses
 from drivelint.incident.command import reproducing_commands, rule_ids_named_by_user
-from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name
+from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name, text_with_party_names
 from drivelint.incident.delta_v import IMPACT_WINDOW_S
 from drivelint.incident.fitting import (
     SHARED_HEADING_CHARACTERS,
@@ -39,10 +39,11 @@ from drivelint.incident.parties import overtaking_text, party_kinds, party_value
 from drivelint.incident.place import (
     coordinates_source_text,
     doubtful_at_sea_text,
+    driving_side_text,
     geo_source,
-    inferred_driving_side_text,
     place_at_moment,
     road_id_of_lanelet,
+    simulator_text,
     weather_and_light_text,
 )
 from drivelint.incident.record import elements_by_presence
@@ -98,7 +99,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
-        "what": _finding_sentence(finding),
+        "what": text_with_party_names(_finding_sentence(finding), PARTY_LETTERS[0]),
         "story": story_sentence(
             motion,
             at,
@@ -125,7 +126,8 @@ def template_values(case: Case) -> dict[str, Any]:
         "geo_source": (source := geo_source(case)),
         "at_sea": doubtful_at_sea_text(where, source),
         "surroundings": weather_and_light_text(finding.drive),
-        "hand": inferred_driving_side_text(finding.drive),
+        "simulator": simulator_text(finding.drive),
+        "hand": driving_side_text(finding.drive),
         "contact": finding.is_contact,
         "near": finding.is_near_miss,
         "near_margin": amount_text(finding.rule["near_margin"], row["unit"]),
@@ -335,7 +337,8 @@ def _conduct_values(
             )
         found.append(told)
     of_both = extract_shared_reasons(found)
-    found = [conduct_with_party_name(told, told["letter"]) for told in found]
+    others = [(told["id"], told["letter"]) for told in found][::-1] if len(found) > 1 else [None]
+    found = [conduct_with_party_name(told, told["letter"], other) for told, other in zip(found, others, strict=True)]
     of_both = conduct_with_party_name(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
