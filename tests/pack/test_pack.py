@@ -239,6 +239,7 @@ def test_incident_sheets_that_stay_out_are_named(
     (first, line) = capsys.readouterr().out.splitlines()
     assert first.endswith("; 1 incident sheet")
     assert line.startswith("  left out of the pack (sheets of findings that the result does not contain")
+    assert "PDFs whose page is missing or would be written differently now" in line
     assert line.endswith(": incidents/abc.html")
 
 
