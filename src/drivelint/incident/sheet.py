@@ -55,6 +55,7 @@ from drivelint.incident.words import (
     certainty_text,
     closing_speed_text,
     measured_and_required_text,
+    metres_text,
     profile_text,
     story_sentence,
     text_with_minus_signs,
@@ -139,7 +140,7 @@ def template_values(case: Case) -> dict[str, Any]:
         ],
         "closing": closing_speed_text(row["closing_mps"]),
         "against": None if at is None else relative_speed_text(float(motion.relative[at]), row["closing_mps"]),
-        "gap": None if at is None else _metres_text(float(motion.gap[at])),
+        "gap": None if at is None else metres_text(float(motion.gap[at])),
         "least": _least_gap_text(motion, finding),
         "contacts": FittedTexts(
             (hits := _other_contact_texts(case))[:_MOST_LISTED_CONTACTS], max(len(hits) - _MOST_LISTED_CONTACTS, 0)
@@ -220,10 +221,6 @@ def _log_name_of_clip(file_name: str) -> str | None:
 
 def _signed_number_text(s: float) -> str:
     return text_with_minus_signs(f"{s:+.2f}") if s else "0"
-
-
-def _metres_text(value: float) -> str:
-    return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
 def _least_gap_text(motion: MotionOfParties, finding: NamedFinding) -> str | None:

@@ -31,6 +31,11 @@ def speed_text(mps: float) -> str:
     return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
 
 
+def metres_text(value: float) -> str:
+    """Return a length as text; `not known` for NaN."""
+    return "not known" if math.isnan(value) else f"{value:.2f} m"
+
+
 def closing_speed_text(mps: float | None) -> str | None:
     """Return a closing speed in words; None if it is not known."""
     if mps is None:
