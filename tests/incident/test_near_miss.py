@@ -32,7 +32,8 @@ def test_it_says_that_the_rule_was_kept_and_by_how_much(case_of: CaseOf) -> None
     log = fixture_log(OVERTAKE / "near_miss.csv")
     least, at = min((gap(log["ego"][t], log["oncoming"][t]), t) for t in log["ego"] if t in log["oncoming"])
     told = template_values(case_of(NAME))
-    assert told["title"] == f"Near miss at {at:.2f} s: \u201cNo collision\u201d was kept by {least:.2f} m"
+    apart = f"A and B were {least:.2f} m apart"
+    assert told["title"] == f"Near miss at {at:.2f} s: {apart}; \u201cNo collision\u201d was kept"
     assert told["what"].endswith(f"kept by {least:.2f} m")
     assert told["near"]
     assert not told["contact"]

@@ -84,6 +84,18 @@ def test_everything_is_on_two_pages(case_of: CaseOf, tmp_path: Path, name: str) 
         assert page.requests() == [html.as_uri()]
 
 
+@pytest.mark.ci
+def test_a_phone_shows_a_page_in_its_whole_width(case_of: CaseOf, tmp_path: Path) -> None:
+    html = tmp_path / "sheet.html"
+    html.write_bytes(sheet_html(case_of(NAMES[0])))
+    with Page(tmp_path / "profile", html.as_uri()) as page:
+        page.call("Emulation.setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=2, mobile=True)
+        width, shown = page.value("[document.querySelector('.page').offsetWidth, document.documentElement.clientWidth]")
+        assert shown >= width
+        page.call("Emulation.clearDeviceMetricsOverride")
+        fits(page)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("run", ["near_miss", "collision"])
 def test_a_real_contact_is_on_two_pages_with_all_that_was_broken(run: str, tmp_path: Path) -> None:

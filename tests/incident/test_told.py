@@ -16,7 +16,7 @@ from drivelint.incident import sheet_html
 from drivelint.incident.conduct import conduct_with_party_name
 from drivelint.incident.fitting import UndecidedReason, fit_conduct_lists
 from drivelint.incident.judge import EgoRows
-from drivelint.incident.place import coordinates_source_text, inferred_driving_side_text
+from drivelint.incident.place import coordinates_source_text, driving_side_text
 from drivelint.incident.sheet import template_values
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def test_when_the_recording_begins_and_ends(collision: dict[str, Any], case_of: 
 
 @pytest.mark.ci
 def test_overtake_lanes_and_who_else_was_there(collision: dict[str, Any], text: str) -> None:
-    (overtaken,) = re.findall(r"A was overtaking (\w+), in the oncoming lane; A left its lane", collision["story"])
+    (overtaken,) = re.findall(r"A was overtaking car (\w+), in the oncoming lane; A left its lane", collision["story"])
     assert overtaken not in {party["id"] for party in collision["parties"]}
     ego, other = (party["lane"] for party in collision["parties"])
     assert ego.startswith("centre in the oncoming lane; left its lane at ")
@@ -188,7 +188,7 @@ def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
     ("source", "said"), [("junctions", True), ("default", True), ("option", False), ("attribute", False)]
 )
 def test_side_of_the_road_that_nobody_gave(source: str, *, said: bool) -> None:
-    told = inferred_driving_side_text({"handedness": "lht", "handedness_source": source})
+    told = driving_side_text({"handedness": "lht", "handedness_source": source})
     assert told.startswith("Left-hand traffic: ") is said
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -131,6 +133,11 @@ def test_sha256sum_finds_nothing_wrong(packed: Packed) -> None:
     info = (packed.pack / "bag-info.txt").read_text("utf-8")
     assert f"Payload-Oxum: {sum(path.stat().st_size for path in payload)}.{len(payload)}\n" in info
     assert "Bagging-Date" not in info
+    assert info.startswith("External-Description: A result of drivelint"), "for somebody who has only the pack"
+    (command,) = re.findall(r"\? (sha256sum .*)", info)
+    assert subprocess.run([*shlex.split(command), "--quiet"], cwd=packed.pack, check=False).returncode == 0
+    assert "drivelint verify PACK --key KEY" in info
+    assert "No check shows that the log itself is true." in info
 
 
 @pytest.mark.ci
@@ -232,6 +239,7 @@ def test_incident_sheets_that_stay_out_are_named(
     (first, line) = capsys.readouterr().out.splitlines()
     assert first.endswith("; 1 incident sheet")
     assert line.startswith("  left out of the pack (sheets of findings that the result does not contain")
+    assert "PDFs whose page is missing or would be written differently now" in line
     assert line.endswith(": incidents/abc.html")
 
 

@@ -59,11 +59,11 @@ def jpeg(pixels: NDArray[np.uint8], form: str = "JPEG") -> bytes:
 
 def write_bag(
     folder: Path, *, cameras: bool = True, noise: bool = False, contacts: int = 1, damaged: Container[int] = (),
-    storage: StoragePlugin = StoragePlugin.MCAP,
+    storage: StoragePlugin = StoragePlugin.MCAP, states_late_s: float = 0.01,
 ) -> Path:  # fmt: skip
     """Write the bag. `noise`: the frames are of random pixels, which no encoder makes small; `contacts`: people in the way, 3 m apart.
 
-    `damaged`: numbers of frames of the front camera that are no image.
+    `damaged`: numbers of frames of the front camera that are no image; `states_late_s`: from the time of a state until it is recorded.
     """
     store = get_typestore(Stores.ROS2_HUMBLE)
     for name in ("shape_msgs/SolidPrimitive", "derived_object_msgs/Object", "derived_object_msgs/ObjectArray"):
@@ -73,7 +73,7 @@ def write_bag(
         t_s = T0 + 0.05 * n
         cars = [ros.thing(9, 45.0, 0.0)] if contacts == 1 else [_person(9 + k, 12.0 + 3.0 * k) for k in range(contacts)]
         for topic, name, _, content in (ros.odometry(t_s, 10 * 0.05 * n, 0.0, 0.0, 10.0), ros.things(t_s, *cars)):
-            messages.append((t_s + 0.01, topic, name, ros.encode(name, content)))
+            messages.append((t_s + states_late_s, topic, name, ros.encode(name, content)))
     rng = np.random.default_rng(1)
     for topic in (FRONT, LEFT) if cameras else ():
         for n, t_s in enumerate(taken_s(topic)):

@@ -7,11 +7,15 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 import drivelint
+from drivelint.drive.trace import FrameTimes
 from drivelint.inspect.content import file_content
+from drivelint.pictures.clock import DriveClock
 from drivelint.report import html
 from drivelint.result.load import load_result
 from tests.pictures.camera_bag import FRONT, LEFT, T0, number_in, taken_s, write_bag
@@ -42,6 +46,24 @@ def out(bag: Path) -> Path:
 
 def test_each_picture_is_the_frame_that_was_taken_nearest_in_time(out: Path) -> None:
     rows = load_result(out).pictures.to_pylist()
+    assert_nearest(rows)
+
+
+@pytest.mark.ci
+def test_a_frame_is_late_though_the_states_are_logged_without_delay(tmp_path: Path) -> None:
+    """A claims handler saw a frame of 0.05 s earlier "at the moment": the drive's own times were equal to its log times."""
+    bag = write_bag(tmp_path / "bag", states_late_s=0.0)
+    assert_nearest(load_result(judged(bag, tmp_path / "results")).pictures.to_pylist())
+
+
+def test_a_drive_by_log_times_has_the_log_times_of_its_frames() -> None:
+    times = FrameTimes(np.array([5, 6]), np.array([5, 6], np.uint64))
+    assert DriveClock(times, uses_log_times=True).is_log_clock
+    assert not DriveClock(times).is_log_clock
+    assert DriveClock(None).is_log_clock
+
+
+def assert_nearest(rows: list[dict[str, Any]]) -> None:
     assert {(row["camera"], row["shot"]) for row in rows} == {(c, s) for c in (FRONT, LEFT) for s in OFF_S}
     assert [row["camera"] for row in rows if row["camera_no"] == 0] == [FRONT] * 3
     for row in rows:
@@ -112,6 +134,8 @@ def test_the_sheet_has_a_page_of_them(bag: Path, out: Path) -> None:
     page = sheet.read_text(encoding="utf-8")
     assert page.count("data:image/jpeg;base64,") == load_result(out).pictures.num_rows
     assert page.count("of 3</span>") == 3
+    assert "Faces and number plates are shown as they are in the log" in page, "whoever sends the page must think of it"
+    assert page.count("made smaller") == 1
     assert "img-src data:" in page
 
 

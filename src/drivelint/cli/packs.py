@@ -112,7 +112,7 @@ def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) ->
             why = f"  {finding['finding_id']} {finding['rule_id']}: no SQL, because {finding['without_sql_because']}"
             typer.echo(terminal_safe_line(why), err=on_stderr)
     if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
-        why = "sheets of findings that the result does not contain, and PDFs without an HTML page"
+        why = "sheets of findings that the result does not contain, and PDFs whose page is missing or would be written differently now"
         typer.echo(terminal_safe_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=on_stderr)
 
 

@@ -55,6 +55,8 @@ class EgoSize(NamedTuple):
 
 ASSUMED_MOTION_CHECK = "assumed_motion"
 """The id of the check for a log whose mapping assumes speeds and lanes."""
+LOG_TIME_CHECK = "log_time_used"
+"""The data-quality check of a log whose states have the log times of their messages, not the messages' own times."""
 ASSUMED_SIZE_CHECK = "assumed_size"
 """The id of the check (information only) for a size that the log does not record. Converted logs and clips keep its findings."""
 TURNED_FRAME_CHECK = "turned_frame"

@@ -7,6 +7,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.catalogue.header import CONTACT_TAG
+from drivelint.incident.case import PARTY_LETTERS
+from drivelint.incident.conduct import text_with_party_names
 from drivelint.incident.words import profile_text, unit_text
 from drivelint.report.html.svg import Axis, axis_around, svg_number
 
@@ -96,7 +98,10 @@ def gap_and_finding_courses(case: Case) -> tuple[list[dict[str, Any]], dict[str,
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
             gaps.append({**row, "title": title, "planned": profile_text(row["profile"])})
         elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
-            own = {**row, "title": f"{rule['observes'] or title}, {unit_text(unit)}"}
+            own = {
+                **row,
+                "title": f"{text_with_party_names(rule['observes'] or title, PARTY_LETTERS[0])}, {unit_text(unit)}",
+            }
     return gaps, own if own and any(value is not None for value in own["observed"]) else None
 
 

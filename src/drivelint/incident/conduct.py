@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 _QUOTATION_PATTERN: Final = re.compile("(\u201c[^\u201d]*\u201d)")
 _EGO_PATTERN: Final = re.compile(r"\b[Tt]he ego\b")
+_ACTOR_PATTERN_TEXT: Final = (
+    r"(?:\b(?:object|actor) {0}(?![\w.-])|(?<=\bwith ){0}(?=:)|(?<![\w.-]){0}(?= (?:ran into|braked at|passed with)\b))"
+)
+"""An actor in the text of a reason: its id alone may be a number, which other numbers must not be taken for."""
 _UNDECIDED_VERDICTS: Final = frozenset({"unknown", "error"})
 
 
@@ -84,24 +88,35 @@ def conduct_texts_and_counts(
     }
 
 
-def conduct_with_party_name(conduct_lists: Mapping[str, Any], party_name: str) -> dict[str, Any]:
-    """Return the texts about a party with `party_name` instead of "the ego"; titles in quotation marks are not changed."""
+def conduct_with_party_name(
+    conduct_lists: Mapping[str, Any], party_name: str, other_party: tuple[str, str] | None = None
+) -> dict[str, Any]:
+    """Return the texts about a party with `party_name` instead of "the ego"; titles in quotation marks are not changed.
+
+    `other_party`: id and letter of the other party, which is named by its letter too; None: there is none.
+    """
     named_lists = dict(conduct_lists)
     for part in ("broken", "kept", "excused", "beside"):
         if part in conduct_lists:
-            named_lists[part] = [_text_with_party_name(line, party_name) for line in conduct_lists[part]]
+            named_lists[part] = [text_with_party_names(line, party_name, other_party) for line in conduct_lists[part]]
     if "reasons" in conduct_lists:
         named_lists["reasons"] = [
-            reason._replace(why=_text_with_party_name(reason.why, party_name)) for reason in conduct_lists["reasons"]
+            reason._replace(why=text_with_party_names(reason.why, party_name, other_party))
+            for reason in conduct_lists["reasons"]
         ]
     return named_lists
 
 
-def _text_with_party_name(text: str, party_name: str) -> str:
-    return "".join(
-        part if part.startswith("\u201c") else _EGO_PATTERN.sub(party_name, part)
-        for part in _QUOTATION_PATTERN.split(text)
-    )
+def text_with_party_names(text: str, party_name: str, other_party: tuple[str, str] | None = None) -> str:
+    """Return a text with the letters of the parties; see `conduct_with_party_name`."""
+    parts = _QUOTATION_PATTERN.split(text)
+    unquoted = range(0, len(parts), 2)
+    for i in unquoted:
+        parts[i] = _EGO_PATTERN.sub(party_name, parts[i])
+        if other_party is not None:
+            actor_id, letter = other_party
+            parts[i] = re.sub(_ACTOR_PATTERN_TEXT.format(re.escape(actor_id)), letter, parts[i])
+    return "".join(parts)
 
 
 def _overlaps_span(row: Row, span_ns: tuple[int, int]) -> bool:

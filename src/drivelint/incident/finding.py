@@ -15,7 +15,7 @@ from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.incident.motion import MotionOfParties
-from drivelint.phrases import name_list
+from drivelint.phrases import name_list, plural
 from drivelint.report.worst_first import is_contact, worst_first
 
 if TYPE_CHECKING:
@@ -153,6 +153,11 @@ def _no_contact_message(result: Result, drive_id_prefix: str) -> str:
         folder = "DIR" if result.folder is None else shlex.quote(str(result.folder))
         told += f": the nearest miss has a sheet: drivelint report {folder} --incident {named}"
         return f"{told}; or name another finding" if found else told
+    drives = [drive for drive in result.drives.to_pylist() if drive["drive_id"].startswith(drive_id_prefix)]
+    unjudged = [drive for drive in drives if drive["status"] == "not_judged"]
+    if unjudged and not found:
+        of_all = f"{len(unjudged)} of {plural(len(drives), 'drive')}"
+        return f"{told}, but not judged: {of_all} ({unjudged[0]['status_reason']})"
     return f"{told}: {'name another finding' if found else 'nothing was found there that a sheet could be about'}"
 
 

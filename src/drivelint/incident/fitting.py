@@ -90,6 +90,7 @@ def is_first_page_full(sheet_values: dict[str, Any]) -> bool:
     sure, rests, drive = sheet_values["sure"], sheet_values["rests"], sheet_values["drive"]
     facts = [
         8
+        + _n_wrapped_lines(sheet_values["simulator"], _FACT_LINE_CHARACTERS)
         + _n_wrapped_lines(
             f"{drive['map_name']} {sheet_values['road_id']} {sheet_values['place'].lanelet_id} "
             f"{sheet_values['coordinates']} {sheet_values['hand']}",

@@ -39,6 +39,7 @@ class MotionOfParties:
     `t`: seconds from the moment; `velocity`: along x and y, shape (2, n), in m/s; `backwards`: moves against its heading;
     `lane_offset`: from the centre of the ego's lane, left positive. `gap`: distance of the boxes in m, negative: depth of overlap;
     `closing`: speed at which the distance of the box centres decreases; `relative`: relative speed; `turn`: angle between the headings.
+    `is_aside`: they pass beside each other; `is_alongside`: their lengths are side by side too.
     `out_since`: when the ego left its lane, in seconds from the moment; NaN: the ego is in its lane, or this was not examined.
     """
 
@@ -51,6 +52,8 @@ class MotionOfParties:
     closing: Floats
     relative: Floats
     turn: Floats
+    is_aside: Mask
+    is_alongside: Mask
     out_since: Floats
 
     @classmethod
@@ -67,6 +70,7 @@ class MotionOfParties:
         with np.errstate(invalid="ignore", divide="ignore"):
             closing = -(east * de + north * dn) / far
         exact = c["clearance_m"]
+        is_aside, is_alongside = _side_by_side_masks(c)
         return cls(
             t=(steps["t_ns"].to_numpy() - moment_ns) / 1e9,
             speed=(c["speed_mps"], c["object_speed_mps"]),
@@ -80,6 +84,8 @@ class MotionOfParties:
             closing=closing,
             relative=np.hypot(de, dn),
             turn=np.abs(c["heading_diff_rad"]),
+            is_aside=is_aside,
+            is_alongside=is_alongside,
             out_since=(floats(steps["out_since_ns"]) - moment_ns) / 1e9,
         )
 
@@ -153,6 +159,25 @@ def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
     along: Floats = columns[f"{column_prefix}vx_mps"] * np.cos(yaw) + columns[f"{column_prefix}vy_mps"] * np.sin(yaw)
     found: Mask = along < -_STANDING_MPS
     return found
+
+
+def _side_by_side_masks(columns: dict[str, Floats]) -> tuple[Mask, Mask]:
+    """Return masks of the steps at which the parties pass beside each other, and at which their lengths are side by side as well.
+
+    In opposite directions, they pass if the centres would do so at the present velocities by half of both widths; in the same direction, if
+    neither is ahead of the other. False if anything is not known.
+    """
+    east, north = columns["object_x_m"] - columns["x_m"], columns["object_y_m"] - columns["y_m"]
+    de, dn = columns["object_vx_mps"] - columns["vx_mps"], columns["object_vy_mps"] - columns["vy_mps"]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        apart_m = np.abs(east * dn - north * de) / np.hypot(de, dn)
+    across_m, along_m = np.full(len(east), np.inf), np.zeros(len(east))
+    for yaw in (columns["yaw_rad"], columns["object_yaw_rad"]):
+        across_m = np.minimum(across_m, np.abs(north * np.cos(yaw) - east * np.sin(yaw)))
+        along_m = np.maximum(along_m, np.abs(east * np.cos(yaw) + north * np.sin(yaw)))
+    is_opposite = np.abs(columns["heading_diff_rad"]) > np.pi / 2
+    is_aside = np.where(is_opposite, apart_m, across_m) >= (columns["width_m"] + columns["object_width_m"]) / 2
+    return is_aside, is_aside & (along_m < (columns["length_m"] + columns["object_length_m"]) / 2)
 
 
 def is_slowing_known(motion: MotionOfParties, party: int, until_s: float) -> bool:

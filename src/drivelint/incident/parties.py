@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import shapely
 
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.incident.case import PARTY_LETTERS
 from drivelint.incident.delta_v import delta_v_text
 from drivelint.incident.judge import EgoRows
@@ -156,13 +157,18 @@ def overtaking_text(case: Case, step_no: int | None) -> str:
         }
     )
     against = case.ego_rows.steps["with_traffic"][step_no].as_py() is False
-    return f"A was overtaking {' and '.join(passed)}{', in the oncoming lane' if against else ''}" if passed else ""
+    classes = {each["actor_id"]: each["actor_class"] for each in case.drive.trace.tables["actor"].to_pylist()}
+    named = [f"{(classes.get(who) or 'vehicle').replace('_', ' ')} {who}" for who in passed]
+    return f"A was overtaking {' and '.join(named)}{', in the oncoming lane' if against else ''}" if passed else ""
 
 
 def sheet_title(case: Case, motion: MotionOfParties, step_no: int | None, *, is_only_possible: bool) -> str:
     """Return the title of the sheet: a collision of A and B, the broken rule, or the rule that was nearly broken."""
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.drive_start_ns)
+    if finding.is_near_miss and CONTACT_TAG in finding.rule["tags"] and row["unit"] == "m" and len(finding.parties) > 1:
+        apart = amount_text(row["observed"], row["unit"])
+        return f"Near miss at {when}: A and B were {apart} apart; \u201c{finding.rule['title']}\u201d was kept"
     if finding.is_near_miss:
         return f"Near miss at {when}: \u201c{finding.rule['title']}\u201d was kept by {amount_text(row['margin'], row['unit'])}"
     if not finding.is_contact or len(finding.parties) < 2:
@@ -171,6 +177,7 @@ def sheet_title(case: Case, motion: MotionOfParties, step_no: int | None, *, is_
     return collision_title(
         motion,
         step_no,
+        party_kinds=party_kinds(case),
         time_text=when,
         closing_mps=row["closing_mps"],
         is_in_oncoming_lane=oncoming,

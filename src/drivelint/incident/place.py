@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from drivelint.incident.case import Case
     from drivelint.result.text import Row
 
+_SIMULATOR_BY_FORMAT: Final = {"carla-testbench": "CARLA", "esmini": "esmini", "sumo-fcd": "SUMO"}
+"""The simulators whose own formats are read."""
 _SURROUNDING_CONDITIONS: Final = ("weather", "light")
 _INFERRED_SIDE_TEXTS: Final = {
     "junctions": "inferred from the links in the map's junctions",
@@ -76,6 +78,12 @@ def weather_and_light_text(drive: Row) -> str:
     return "; ".join([*parts, f"{' and '.join(lost)} not known"] if lost else parts).capitalize()
 
 
+def simulator_text(drive: Row) -> str:
+    """Return in words that the log has the format of a simulator, so that the drive may never have been driven; '' for other formats."""
+    name = _SIMULATOR_BY_FORMAT.get(drive["format"])
+    return f"The log has the format of the simulator {name}: probably a simulated drive" if name else ""
+
+
 def coordinates_source_text(case: Case) -> str:
     """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
@@ -88,11 +96,11 @@ def coordinates_source_text(case: Case) -> str:
     return f"{said}{text_with_minus_signs(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
 
 
-def inferred_driving_side_text(drive: Row) -> str:
-    """Return in words the side of the road that is driven on, and how it was inferred; '' if it was not inferred."""
+def driving_side_text(drive: Row) -> str:
+    """Return in words the side of the road that is driven on, and how it was inferred, if it was; '' if it is not known."""
     side = {"lht": "Left", "rht": "Right"}.get(drive["handedness"])
     how = _INFERRED_SIDE_TEXTS.get(drive["handedness_source"])
-    return f"{side}-hand traffic: {how}." if side and how else ""
+    return f"{side}-hand traffic: {how}." if side and how else f"{side}-hand traffic." if side else ""
 
 
 def road_id_of_lanelet(case: Case, lanelet_id: str | None) -> str | None:

@@ -16,7 +16,7 @@ from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import PARTY_LETTERS
 from drivelint.incident.charts import charts_over_time, gap_and_finding_courses
 from drivelint.incident.command import reproducing_commands, rule_ids_named_by_user
-from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name
+from drivelint.incident.conduct import conduct_texts_and_counts, conduct_with_party_name, text_with_party_names
 from drivelint.incident.delta_v import IMPACT_WINDOW_S
 from drivelint.incident.fitting import (
     SHARED_HEADING_CHARACTERS,
@@ -39,10 +39,11 @@ from drivelint.incident.parties import overtaking_text, party_kinds, party_value
 from drivelint.incident.place import (
     coordinates_source_text,
     doubtful_at_sea_text,
+    driving_side_text,
     geo_source,
-    inferred_driving_side_text,
     place_at_moment,
     road_id_of_lanelet,
+    simulator_text,
     weather_and_light_text,
 )
 from drivelint.incident.record import elements_by_presence
@@ -54,6 +55,7 @@ from drivelint.incident.words import (
     certainty_text,
     closing_speed_text,
     measured_and_required_text,
+    metres_text,
     profile_text,
     story_sentence,
     text_with_minus_signs,
@@ -98,7 +100,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
-        "what": _finding_sentence(finding),
+        "what": text_with_party_names(_finding_sentence(finding), PARTY_LETTERS[0]),
         "story": story_sentence(
             motion,
             at,
@@ -125,7 +127,8 @@ def template_values(case: Case) -> dict[str, Any]:
         "geo_source": (source := geo_source(case)),
         "at_sea": doubtful_at_sea_text(where, source),
         "surroundings": weather_and_light_text(finding.drive),
-        "hand": inferred_driving_side_text(finding.drive),
+        "simulator": simulator_text(finding.drive),
+        "hand": driving_side_text(finding.drive),
         "contact": finding.is_contact,
         "near": finding.is_near_miss,
         "near_margin": amount_text(finding.rule["near_margin"], row["unit"]),
@@ -137,7 +140,7 @@ def template_values(case: Case) -> dict[str, Any]:
         ],
         "closing": closing_speed_text(row["closing_mps"]),
         "against": None if at is None else relative_speed_text(float(motion.relative[at]), row["closing_mps"]),
-        "gap": None if at is None else _metres_text(float(motion.gap[at])),
+        "gap": None if at is None else metres_text(float(motion.gap[at])),
         "least": _least_gap_text(motion, finding),
         "contacts": FittedTexts(
             (hits := _other_contact_texts(case))[:_MOST_LISTED_CONTACTS], max(len(hits) - _MOST_LISTED_CONTACTS, 0)
@@ -218,10 +221,6 @@ def _log_name_of_clip(file_name: str) -> str | None:
 
 def _signed_number_text(s: float) -> str:
     return text_with_minus_signs(f"{s:+.2f}") if s else "0"
-
-
-def _metres_text(value: float) -> str:
-    return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
 def _least_gap_text(motion: MotionOfParties, finding: NamedFinding) -> str | None:
@@ -335,7 +334,8 @@ def _conduct_values(
             )
         found.append(told)
     of_both = extract_shared_reasons(found)
-    found = [conduct_with_party_name(told, told["letter"]) for told in found]
+    others = [(told["id"], told["letter"]) for told in found][::-1] if len(found) > 1 else [None]
+    found = [conduct_with_party_name(told, told["letter"], other) for told, other in zip(found, others, strict=True)]
     of_both = conduct_with_party_name(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}

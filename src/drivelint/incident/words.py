@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 SENSE_WORDS: Final = {">": "more than ", ">=": "at least ", "<": "less than ", "<=": "at most "}
 _KMH, _MPH = 3.6, 1 / 0.44704
+_SIDE_BY_SIDE: Final = "side by side"
+_TITLE_LINE_CHARACTERS: Final = 86
+"""A longer title would take a second line of page 1."""
 _HEAD_ON_RAD, _ALONG_RAD = 5 * math.pi / 6, math.pi / 6
 
 
@@ -26,6 +29,11 @@ def speed_text(mps: float) -> str:
     if math.isnan(mps):
         return "not known"
     return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
+
+
+def metres_text(value: float) -> str:
+    """Return a length as text; `not known` for NaN."""
+    return "not known" if math.isnan(value) else f"{value:.2f} m"
 
 
 def closing_speed_text(mps: float | None) -> str | None:
@@ -141,8 +149,7 @@ def story_sentence(
         _party_and_speed_text(letter, kind, float(each[step_no]))
         for letter, kind, each in zip("AB", party_kinds, motion.speed, strict=True)
     ]
-    turn = float(motion.turn[step_no])
-    how = "" if math.isnan(turn) else _heading_difference_text(turn)
+    how = _directions_text(motion, step_no)
     relative = float(motion.relative[step_no])
     if not are_speeds_nearly_equal(relative, closing_mps):
         how = f"{how}, relative speed {speed_text(relative)}" if how else f"relative speed {speed_text(relative)}"
@@ -160,23 +167,34 @@ def collision_title(
     motion: MotionOfParties,
     step_no: int | None,
     *,
+    party_kinds: Sequence[str | None],
     time_text: str,
     closing_mps: float | None,
     is_in_oncoming_lane: bool,
     is_only_possible: bool,
 ) -> str:
-    """Return a title for a contact of A and B: their directions, the time, A's lane, and the closing speed.
+    """Return a title for a contact of A and B: their kinds if these differ, directions, the time, A's lane, and the closing speed.
 
-    The title does not state who is at fault. `step_no`: the last step before the contact; `is_in_oncoming_lane`: A was there at
-    `step_no`.
+    The title does not state who is at fault. `step_no`: the last step before the contact; `party_kinds`: the class of each party, None:
+    not recorded; `is_in_oncoming_lane`: A was there at `step_no`.
     """
-    turn = math.nan if step_no is None else float(motion.turn[step_no])
-    how = "" if math.isnan(turn) else f" {_heading_difference_text(turn)}"
-    parts = [f"A and B {'may have ' if is_only_possible else ''}collided{how} at {time_text}"]
-    parts += ["A in the oncoming lane"] if is_in_oncoming_lane else []
-    if closing_mps is not None and closing_mps > 0:
+    directions = "" if step_no is None else _directions_text(motion, step_no)
+    if directions.startswith(_SIDE_BY_SIDE):
+        directions = _SIDE_BY_SIDE  # the sentence below the title has the rest
+    how = f" {directions}" if directions else ""
+    is_named = all(party_kinds) and len(set(party_kinds)) > 1
+    who = " and ".join(
+        f"{kind} {letter}" if is_named else letter for letter, kind in zip("AB", party_kinds, strict=True)
+    )
+    parts = [f"{who[:1].upper()}{who[1:]} {'may have ' if is_only_possible else ''}collided{how} at {time_text}"]
+    relative = math.nan if step_no is None else float(motion.relative[step_no])
+    if closing_mps is not None and closing_mps > 0 and are_speeds_nearly_equal(relative, closing_mps):
         parts.append(f"closing at {closing_mps:.1f} m/s")
-    return ", ".join(parts)
+    elif not math.isnan(relative):
+        parts.append(f"relative speed {relative:.1f} m/s")
+    with_lane = ", ".join([parts[0], "A in the oncoming lane", *parts[1:]])
+    is_lane_told = is_in_oncoming_lane and len(with_lane) <= _TITLE_LINE_CHARACTERS
+    return with_lane if is_lane_told else ", ".join(parts)
 
 
 def _party_and_speed_text(letter: str, kind: str | None, mps: float) -> str:
@@ -188,11 +206,17 @@ def _party_and_speed_text(letter: str, kind: str | None, mps: float) -> str:
     return ", ".join(parts) if kind else " ".join(parts) if known else ""
 
 
-def _heading_difference_text(turn_rad: float) -> str:
-    """Return the angle between two headings in words."""
-    if turn_rad >= _HEAD_ON_RAD:
+def _directions_text(motion: MotionOfParties, step_no: int) -> str:
+    """Return the directions of both parties in words; '' if not known. Who passes beside the other does not come head-on."""
+    turn_rad = float(motion.turn[step_no])
+    if math.isnan(turn_rad):
+        return ""
+    if _ALONG_RAD < turn_rad < _HEAD_ON_RAD:
+        return f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
+    if turn_rad >= _HEAD_ON_RAD and not motion.is_aside[step_no]:
         return "head-on"
-    return "in the same direction" if turn_rad <= _ALONG_RAD else f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
+    said = "in the same direction" if turn_rad <= _ALONG_RAD else "in opposite directions"
+    return f"{_SIDE_BY_SIDE} {said}" if motion.is_alongside[step_no] else said
 
 
 def _lane_departure_text(motion: MotionOfParties, step_no: int, moment_from_start_s: float) -> str:

@@ -19,7 +19,16 @@ MANIFEST: Final = "manifest-sha256.txt"
 TAG_MANIFEST: Final = "tagmanifest-sha256.txt"
 _DECLARATION_BYTES: Final = b"BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n"
 _MANIFEST_LINE_PATTERN: Final = re.compile(r"([0-9a-f]{64})  ([^\s].*)")
+DESCRIPTION: Final = """\
+A result of drivelint, and what it was judged from.
+  Was a file changed? sha256sum -c manifest-sha256.txt tagmanifest-sha256.txt
+  Who signed it, and does the log give this result? drivelint verify PACK --key KEY
+  KEY is the public key of the signer: from the signer, not from this folder.
+  No check shows that the log itself is true.
+"""
+"""The description of a pack for somebody who has only the pack: a tag whose further lines are indented."""
 _BAG_INFO_PATTERN: Final = re.compile(
+    rf"(?:External-Description: {re.escape(DESCRIPTION)})?"
     r"(?:Bagging-Date: (\d{4}-\d\d-\d\d)\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
 )
 _REFUSED_CHARACTER: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")

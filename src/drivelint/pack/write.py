@@ -58,8 +58,9 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
         work = Path(mkdtemp(prefix=".drivelint.", dir=request.out.parent))
         try:
             told = content.payload(work)
-            info = {"Bag-Software-Agent": f"drivelint {__version__}"}
-            bag.write_info_and_manifest(work, info if request.date is None else {"Bagging-Date": request.date, **info})
+            info = {"External-Description": bag.DESCRIPTION.strip()}
+            info |= {} if request.date is None else {"Bagging-Date": request.date}
+            bag.write_info_and_manifest(work, {**info, "Bag-Software-Agent": f"drivelint {__version__}"})
             said = content.statement(work, told)
             if key is None:
                 (work / STATEMENT_FILE).write_bytes(said)

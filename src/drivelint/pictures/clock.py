@@ -21,9 +21,14 @@ _SAME_CLOCK_TOLERANCE_NS: Final = 1_000_000_000
 
 
 class DriveClock:
-    """Converts times of a drive to log times. `times`: the times of the drive's frames on both clocks; None: the clocks are the same."""
+    """Converts times of a drive to log times. `times`: the times of the drive's frames on both clocks; None: the clocks are the same.
 
-    def __init__(self, times: FrameTimes | None) -> None:
+    `is_log_clock`: the times of the drive are log times. Times of the drive's own messages that equal their log times are not: a camera's
+    frame may still be logged later than it was taken.
+    """
+
+    def __init__(self, times: FrameTimes | None, *, uses_log_times: bool = False) -> None:
+        self.is_log_clock = times is None or uses_log_times
         self._t_ns, ahead = np.zeros(1, np.int64), np.zeros(1, np.int64)
         if times is not None and len(times.t_ns):
             self._t_ns, first = np.unique(times.t_ns, return_index=True)
@@ -36,11 +41,6 @@ class DriveClock:
         before, after = (min(i, len(self._t_ns) - 1) for i in (at - 1, at))
         is_after = abs(int(self._t_ns[after]) - t_ns) < abs(int(self._t_ns[before]) - t_ns)
         return int(self._ahead_ns[after if is_after else before])
-
-    @property
-    def is_log_clock(self) -> bool:
-        """Whether the times of the drive are log times."""
-        return not self._ahead_ns.any()
 
 
 def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) -> tuple[FramePlace, int] | None:

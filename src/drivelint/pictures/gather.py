@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import FrameTimes
+from drivelint.drive.trace import LOG_TIME_CHECK, FrameTimes
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.mcap.bag import bag_files
 from drivelint.formats.ros2.merge import SQLITE_FORMAT
@@ -94,15 +94,15 @@ def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
     """Return the cameras of a log; None: it has none."""
     if format_ in mcap.formats:
         files = tuple(bag_files(trace.path))
+        has_log_times = LOG_TIME_CHECK in trace.tables["quality"]["check_id"].to_pylist()
+        clock = DriveClock(trace.frame_times, uses_log_times=has_log_times)
         if format_ == SQLITE_FORMAT:
             from drivelint.pictures import sqlite_log
 
             if topics := sqlite_log.camera_topics(files):
-                return DriveCameras(
-                    trace.path, lambda: sqlite_log.SqliteFrameSource(files), DriveClock(trace.frame_times), topics
-                )
+                return DriveCameras(trace.path, lambda: sqlite_log.SqliteFrameSource(files), clock, topics)
         elif topics := camera_topics(files):
-            return DriveCameras(trace.path, lambda: McapFrameSource(files), DriveClock(trace.frame_times), topics)
+            return DriveCameras(trace.path, lambda: McapFrameSource(files), clock, topics)
     elif format_ == D123_FORMAT:
         from drivelint.formats.d123.reader import log_clock
         from drivelint.pictures.d123_log import D123FrameSource, camera_names

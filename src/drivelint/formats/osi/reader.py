@@ -18,7 +18,15 @@ from mcap.records import Channel
 
 from drivelint.drive.clock_restart import backward_step_findings
 from drivelint.drive.lost_time import times_of_lost_rows
-from drivelint.drive.trace import EARLIEST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
+from drivelint.drive.trace import (
+    EARLIEST_UTC_NS,
+    LOG_TIME_CHECK,
+    FrameTimes,
+    QualityFinding,
+    Recording,
+    States,
+    single_map,
+)
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.malformed import decode_readable, decode_without_malformed
@@ -320,7 +328,7 @@ def _frame_times_ns(batches: list[FrameBatch], log_ns: Times, findings: list[Qua
             "the time stamps of the messages are missing or do not advance: the log times of the container are used"
         )
         findings.append(
-            QualityFinding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
+            QualityFinding(LOG_TIME_CHECK, "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
         )
     findings += backward_step_findings(stamps)
     return stamps

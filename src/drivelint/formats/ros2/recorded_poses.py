@@ -10,7 +10,15 @@ import pyarrow as pa
 
 from drivelint.drive.clock_restart import backward_step_findings
 from drivelint.drive.order import steps, time_derivative
-from drivelint.drive.trace import EARLIEST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
+from drivelint.drive.trace import (
+    EARLIEST_UTC_NS,
+    LOG_TIME_CHECK,
+    SIZE_COLUMNS,
+    STATE_COLUMNS,
+    FrameTimes,
+    QualityFinding,
+    States,
+)
 from drivelint.formats.coordinate_frames import Poses, clean_frame_name, rotated, unit_quaternions
 
 if TYPE_CHECKING:
@@ -242,7 +250,7 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)
         message = f"{why}: the log times of the container are used for all messages"
-        findings.append(QualityFinding("log_time_used", "warning", message, n, first))
+        findings.append(QualityFinding(LOG_TIME_CHECK, "warning", message, n, first))
     return why is None
 
 
