@@ -335,7 +335,7 @@ class Recording:
     mapping names. `lost_times`: spans that a damaged log lacks. `conditions`: condition -> word, as the log states them. `strict_units`:
     units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`: as in `Trace`. `frames_ns`: the times of
     all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping names the column of the
-    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
+    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ. `why_no_ego`: why the log names no ego.
     """
 
     format: str
@@ -359,6 +359,7 @@ class Recording:
     frames_ns: Times | None = None
     ends_apart_ns: int = 0
     names_indicator: bool | None = None
+    why_no_ego: str = ""
 
     def hand_over_states(self) -> States:
         """Return the states and drop them here, so that memory contains the states of a long drive only once."""

@@ -137,6 +137,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_topic_by_map(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = frame_times_and_start(list(parts.values()))
+    recording.why_no_ego = log.why_no_ego and f"no {ODOMETRY}, and {log.why_no_ego}"
     recording.notes += [*log.notes, *_missing_ego_notes(log), f"positions are in the frame {fixed!r}"]
     return recording
 
@@ -218,7 +219,7 @@ def _ego_rows_by_transforms(
     """Return the ego's rows by the transforms of its frame, if a chain leads to it, and whether the box gave their centres."""
     found = ego_rows_or_reason(_transforms(log), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
     if isinstance(found, str):
-        log.why_no_ego = found
+        log.why_no_ego = "; ".join([found, *log.undefined_ego.texts()])
         return {}, False
     log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
     log.add_times(found.topic, found.rows)
