@@ -119,6 +119,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         recording.geo_offset,
         nobody_ns,
         in_log_order=recorded is not None and bool(restarts),
+        fixed_frame=recording.fixed_frame,
     )
 
 

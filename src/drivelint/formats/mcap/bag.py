@@ -80,6 +80,24 @@ def bag_files(path: Path) -> list[Path]:
     return files
 
 
+def lone_part_findings(path: Path) -> list[QualityFinding]:
+    """Return a finding for a file with the name of a part of a bag, such as `drive_1.mcap`, beside others but without `metadata.yaml`.
+
+    A recorder writes `metadata.yaml` when it ends, so it is missing after a crash.
+    """
+    name, _, number = path.stem.rpartition("_")
+    if path.is_dir() or not number.isdecimal() or (path.parent / METADATA_FILE).exists():
+        return []
+    near = [path.with_name(f"{name}_{int(number) + step}{path.suffix}") for step in (-1, 1)]
+    if not any(map(Path.is_file, near)):
+        return []
+    message = (
+        f"one of several parts of a bag without {METADATA_FILE}: it is a drive of its own, cut where the part begins and ends: "
+        f"to judge the bag as one drive, first run ros2 bag reindex {quote(str(path.parent))}"
+    )
+    return [QualityFinding("bag_part", "warning", message)]
+
+
 def _bag_file(folder: Path, name: str) -> Path | None:
     """Return the file of a bag, or None if it is missing."""
     # older recorders list only a file's name, or prefix it with the folder's name

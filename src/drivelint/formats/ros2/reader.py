@@ -84,6 +84,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     if not sum(map(len, parts.values())):
         raise _nothing_to_read_error(path, log)
     findings = log.findings
+    findings += bag.lone_part_findings(path)
     findings += [] if objects else [_no_road_users_finding(log)]
     own_times = choose_clock(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
@@ -137,6 +138,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_topic_by_map(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = frame_times_and_start(list(parts.values()))
+    recording.fixed_frame = fixed
     recording.why_no_ego = log.why_no_ego and f"no {ODOMETRY}, and {log.why_no_ego}"
     recording.notes += [*log.notes, *_missing_ego_notes(log), f"positions are in the frame {fixed!r}"]
     return recording
