@@ -10,7 +10,16 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actor_boxes, clock, danger_spaces, draw, finding_markers, measures, places, result_messages
+from drivelint.annotate import (
+    actor_boxes,
+    clock,
+    danger_spaces,
+    draw,
+    finding_markers,
+    measures,
+    places,
+    result_messages,
+)
 from drivelint.annotate.tracks import tracks as tracks_of
 from drivelint.drive.lost_time import LOST_TIME_CHECK
 from drivelint.errors import ChangedLogError
@@ -95,7 +104,8 @@ class _ChannelWriter:
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
         self._prefix = _free_topic_prefix({channel.topic for channel in sink.channels.values()})
         self._has_transforms = any(
-            sink.schemas[channel.schema_id].name.endswith(_TRANSFORM_SCHEMAS) and not channel.topic.endswith("tf_static")
+            sink.schemas[channel.schema_id].name.endswith(_TRANSFORM_SCHEMAS)
+            and not channel.topic.endswith("tf_static")
             for channel in sink.channels.values()
             if channel.schema_id in sink.schemas
         )

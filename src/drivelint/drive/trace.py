@@ -335,9 +335,10 @@ class Recording:
 
     `actors`: an Arrow table with the columns of `actor`, if the log has a separate actor table. `ego_ids`: the egos that the log or the
     mapping names. `lost_times`: spans that a damaged log lacks. `conditions`: condition -> word, as the log states them. `strict_units`:
-    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`, `fixed_frame`: as in `Trace`. `frames_ns`: the times of
-    all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping names the column of the
-    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ. `why_no_ego`: why the log names no ego.
+    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`, `fixed_frame`: as in `Trace`.
+    `frames_ns`: the times of all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping
+    names the column of the indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
+    `why_no_ego`: why the log names no ego.
     """
 
     format: str

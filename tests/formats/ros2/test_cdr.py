@@ -234,9 +234,7 @@ def test_what_definitions_may_hold() -> None:
 def test_a_text_too_long_for_a_name_loses_its_message_and_no_memory() -> None:
     types = {"p/Top": "string frame\nuint32 number"}
     texts = ["map"] * 400 + ["x" * 4_000_000] + ["map"] * 99
-    messages = log_messages(
-        [ros.encode("p/Top", {"frame": text, "number": n}, types) for n, text in enumerate(texts)]
-    )
+    messages = log_messages([ros.encode("p/Top", {"frame": text, "number": n}, types) for n, text in enumerate(texts)])
     readers = decoder(types, "p/Top", {"frame": None, "number": None})
     tracemalloc.start()
     table, malformed = decode_without_malformed(messages, readers.table)

@@ -128,11 +128,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
             all_states.codes["indicator"][mine] = ros_ego.indicator_codes(all_states.t_ns[mine], reports)
         recording.events = ros_ego.engagement_events(reports, ego)
-    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
-        t_ns = recording.states.t_ns
-        span_ns = int(t_ns.min()), int(t_ns.max())
-        recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
-        recording.findings += new_findings
+    _add_signals(recording, log, own_times=own_times)
     recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.times_of_topics(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(_topic_by_map(log))
@@ -142,6 +138,15 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.why_no_ego = log.why_no_ego and f"no {ODOMETRY}, and {log.why_no_ego}"
     recording.notes += [*log.notes, *_missing_ego_notes(log), f"positions are in the frame {fixed!r}"]
     return recording
+
+
+def _add_signals(recording: Recording, log: Log, *, own_times: bool) -> None:
+    """Add the states of the traffic lights, if the log has them."""
+    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
+        t_ns = recording.states.t_ns
+        span_ns = int(t_ns.min()), int(t_ns.max())
+        recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
+        recording.findings += new_findings
 
 
 def _transform_tree(log: Log, *, own_times: bool) -> TransformTree:
