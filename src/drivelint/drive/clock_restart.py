@@ -30,7 +30,9 @@ def backward_step_findings(t_ns: Times, topic: str | None = None) -> list[Qualit
     n, first = int(back.sum()), int(t_ns[1:][back][0])
     of_topic = "" if topic is None else f" of {topic}"
     first_s = (first - int(t_ns.min())) / 1e9
-    message = f"backward steps of the clock{of_topic}: {n}, the first to {first_s:g} s: states are sorted by their times"
+    message = (
+        f"backward steps of the clock{of_topic}: {n}, the first to {first_s:g} s: states are sorted by their times"
+    )
     return [QualityFinding("clock_jump", "warning", message, n, first)]
 
 
