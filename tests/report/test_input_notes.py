@@ -26,3 +26,13 @@ def test_egos_that_never_move_are_counted_once(parked: tuple[str, ...], words: s
     ]
     notes = {note.label: note for note in input_notes(result(rows, []))}
     assert (notes["parked"].words if "parked" in notes else None) == words
+
+
+def test_an_unknown_size_of_the_ego_names_the_option_that_gives_it() -> None:
+    rows = [
+        verdict("unknown", reason_code="missing_ego_size"),
+        verdict("unknown", reason_code="missing_map", rule_id="ukhc.r2"),
+    ]
+    (words,) = (note.words for note in input_notes(result(rows, [])) if note.label == "not judged")
+    assert "1 rule without ego size, which --ego-size gives" in words
+    assert words.count("--") == 1

@@ -69,6 +69,12 @@ def scene_update_chunks(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock,
         yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
+def map_transform(frame: str, log_time: int) -> bytes:
+    """Return a `foxglove.FrameTransform` which says that the frame of the drawings is `frame`, that of the log's positions."""
+    head = wire.time(1, log_time) + wire.text(2, frame) + wire.text(3, draw.MAP_FRAME)
+    return head + wire.nested(4, wire.doubles(0.0, 0.0, 0.0)) + wire.nested(5, wire.doubles(0.0, 0.0, 0.0, 1.0))
+
+
 def ego_transform_chunks(
     tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int
 ) -> Iterator[RecordChunk]:

@@ -10,7 +10,16 @@ import duckdb
 import numpy as np
 
 from drivelint import __version__
-from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, measures, places, result_messages
+from drivelint.annotate import (
+    actor_boxes,
+    clock,
+    danger_spaces,
+    draw,
+    finding_markers,
+    measures,
+    places,
+    result_messages,
+)
 from drivelint.annotate.tracks import tracks as tracks_of
 from drivelint.drive.lost_time import LOST_TIME_CHECK
 from drivelint.errors import ChangedLogError
@@ -94,7 +103,12 @@ class _ChannelWriter:
         frames = drive.trace.frame_times
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
         self._prefix = _free_topic_prefix({channel.topic for channel in sink.channels.values()})
-        self._has_transforms = any(schema.name.endswith(_TRANSFORM_SCHEMAS) for schema in sink.schemas.values())
+        self._has_transforms = any(
+            sink.schemas[channel.schema_id].name.endswith(_TRANSFORM_SCHEMAS)
+            and not channel.topic.endswith("tf_static")
+            for channel in sink.channels.values()
+            if channel.schema_id in sink.schemas
+        )
 
     def write_all(self) -> None:
         """Write every channel, then the metadata and the attachment."""
@@ -109,7 +123,12 @@ class _ChannelWriter:
         self._write_chunks(
             "scene", scene, lambda channel: actor_boxes.scene_update_chunks(tracks, boxes, times, channel)
         )
-        if not self._has_transforms:  # no transforms are added to a log that has its own
+        fixed = drive.trace.fixed_frame
+        if fixed not in {"", draw.MAP_FRAME, actor_boxes.EGO_FRAME}:  # else a viewer could not place the drawings
+            at = times.log_time_at(start)
+            link = result_messages.Message(at, actor_boxes.map_transform(fixed, at))
+            self._write_messages("tf_map", foxglove.schema("FrameTransform"), [link])
+        if not self._has_transforms:  # no moving transforms are added to a log that has its own
             transform = foxglove.schema("FrameTransform")
             self._write_chunks(
                 "tf", transform, lambda channel: actor_boxes.ego_transform_chunks(tracks, boxes, times, channel)

@@ -108,7 +108,7 @@ def _gap_findings(states: States, step: Steps) -> list[QualityFinding]:
         n, first = int(wide.sum()), int(times[:-1][wide][0])
         message = (
             f"gaps in the log of more than {MAX_GAP_PERIODS} periods ({step.period_ns / 1e9:g} s each): {n}, "
-            f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: no rule is judged across a gap"
+            f"the longest {dt.max() / 1e9:g} s, the first from {(first - int(times[0])) / 1e9:g} s: no rule is judged across a gap"
         )
         findings.append(QualityFinding("gap", "warning", message, n, first))
     hole = np.zeros(len(states), np.bool_)

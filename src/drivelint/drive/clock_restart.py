@@ -29,8 +29,9 @@ def backward_step_findings(t_ns: Times, topic: str | None = None) -> list[Qualit
         return []
     n, first = int(back.sum()), int(t_ns[1:][back][0])
     of_topic = "" if topic is None else f" of {topic}"
+    first_s = (first - int(t_ns.min())) / 1e9
     message = (
-        f"backward steps of the clock{of_topic}: {n}, the first to {first / 1e9:g} s: states are sorted by their times"
+        f"backward steps of the clock{of_topic}: {n}, the first to {first_s:g} s: states are sorted by their times"
     )
     return [QualityFinding("clock_jump", "warning", message, n, first)]
 
@@ -57,7 +58,7 @@ def without_values_at_restarts(states: States) -> tuple[States, list[QualityFind
     codes = {name: np.where(twice, UNKNOWN_CODE, codes) for name, codes in states.codes.items()}
     n, first = int(twice.sum()), int(states.t_ns[twice].min())
     message = (
-        f"the clock goes back and repeats the same time, from {first / 1e9:g} s on: the values of {n} of "
+        f"the clock goes back and repeats the same time, from {(first - int(states.t_ns.min())) / 1e9:g} s on: the values of {n} of "
         f"{len(states)} states in that time are unknown"
     )
     return replace(states, numbers=numbers, codes=codes), [QualityFinding("clock_restart", "error", message, n, first)]

@@ -27,12 +27,19 @@ def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
 
 
 def choose_egos(
-    path: Path, actors: Actors, ego_option: str | None, named_egos: list[str], *, ego_required: bool = True
+    path: Path,
+    actors: Actors,
+    ego_option: str | None,
+    named_egos: list[str],
+    *,
+    ego_required: bool = True,
+    why: str = "",
 ) -> tuple[list[str], list[QualityFinding]]:
     """Return the ids of the egos and the findings about the choice.
 
     `ego_option` is the user's id or `all` (every motor vehicle, except in a log with an actor whose id is `all`); `named_egos` are the
-    ids that the log or the mapping names. If there is no ego and `ego_required` is false, the ids are empty and a finding states it.
+    ids that the log or the mapping names; `why`: why it names none. If there is no ego and `ego_required` is false, the ids are empty and
+    a finding states it.
     Errors: `TraceError` if a required ego is missing, or the log has no actor with the user's id.
     """
     ids = set(actors.ids)
@@ -46,7 +53,7 @@ def choose_egos(
         return [ego_option], []
     egos = sorted(ids.intersection(named_egos))
     if not egos:
-        absent = "the log does not name the ego"
+        absent = "the log does not name the ego" + (f" ({why})" if why else "")
         if named_egos:
             absent = f"the log's ego {name_list([repr(each) for each in named_egos])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {name_list(actors.ids)})"

@@ -82,7 +82,9 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         findings += varying
     else:
         actors = actor_rows.from_table(recording.actors, states, split.old_id_by_id)
-    egos, chosen = ego.choose_egos(path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego)
+    egos, chosen = ego.choose_egos(
+        path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego, why=recording.why_no_ego
+    )
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
     findings += actor_rows.correct_sizes(states, actors)
     checked = checks.quality_findings(states, step, actors, derived_velocities=derived)
@@ -119,6 +121,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         recording.geo_offset,
         nobody_ns,
         in_log_order=recorded is not None and bool(restarts),
+        fixed_frame=recording.fixed_frame,
     )
 
 

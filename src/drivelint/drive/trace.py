@@ -155,6 +155,7 @@ class Trace:
     one clock. `geo_reference`: the PROJ string of a projection. `geo_offset` converts the log's coordinates into projected ones: x and y in
     metres, after a rotation (radians). `times_without_actors_ns`: times of frames without actors while the ego is absent.
     `in_log_order`: the states are those of the log (`IngestOptions.as_recorded`) in its own order, because its clock restarts.
+    `fixed_frame`: the frame of the positions, if the log names it.
     """
 
     drive_id: str
@@ -168,6 +169,7 @@ class Trace:
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
     times_without_actors_ns: Times = field(default_factory=lambda: np.zeros(0, np.int64))
     in_log_order: bool = False
+    fixed_frame: str = ""
 
 
 class Doubt(NamedTuple):
@@ -338,9 +340,10 @@ class Recording:
 
     `actors`: an Arrow table with the columns of `actor`, if the log has a separate actor table. `ego_ids`: the egos that the log or the
     mapping names. `lost_times`: spans that a damaged log lacks. `conditions`: condition -> word, as the log states them. `strict_units`:
-    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`: as in `Trace`. `frames_ns`: the times of
-    all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping names the column of the
-    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
+    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`, `fixed_frame`: as in `Trace`.
+    `frames_ns`: the times of all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping
+    names the column of the indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
+    `why_no_ego`: why the log names no ego.
     """
 
     format: str
@@ -364,6 +367,8 @@ class Recording:
     frames_ns: Times | None = None
     ends_apart_ns: int = 0
     names_indicator: bool | None = None
+    why_no_ego: str = ""
+    fixed_frame: str = ""
 
     def hand_over_states(self) -> States:
         """Return the states and drop them here, so that memory contains the states of a long drive only once."""

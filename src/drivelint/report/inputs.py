@@ -27,6 +27,7 @@ _ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK)
 _SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_LISTED_NAMES: Final = 2
+_REMEDY_BY_SIGNAL: Final = {"ego size": ", which --ego-size gives"}
 _NEVER_MOVES_CODE: Final = "ego_never_moves"
 _NO_MAP_CODE: Final = "missing_map"
 _EGO_COLUMNS: Final = ["drive_id", "ego_id"]
@@ -171,7 +172,7 @@ def _not_judged_note(result: Result, n_drives: int) -> InputNote:
     parts = [plural(n_drives, "drive")] if n_drives else []
     if signals:
         without = [
-            f"{plural(n, 'rule')} without {name}{f' ({where})' if where else ''}"
+            f"{plural(n, 'rule')} without {name}{_REMEDY_BY_SIGNAL.get(name, '')}{f' ({where})' if where else ''}"
             for name, n, where in _lacking_signals(result, signals)
         ]
         parts.append(name_list(without))

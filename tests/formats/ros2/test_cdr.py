@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from drivelint.errors import TraceError
+from drivelint.formats.mcap.malformed import decode_without_malformed
 from drivelint.formats.mcap.reader import LogMessage
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import types as ros_types
@@ -227,3 +229,28 @@ def test_what_definitions_may_hold() -> None:
     assert [(each.name, each.kind, each.count) for each in members] == [
         ("name", "string", None), ("d", "float64", -1), ("header", "std_msgs/Header", None), ("t", "time", None), ("two", "uint8", 8388608),
     ]  # fmt: skip
+
+
+def test_a_text_too_long_for_a_name_loses_its_message_and_no_memory() -> None:
+    types = {"p/Top": "string frame\nuint32 number"}
+    texts = ["map"] * 400 + ["x" * 4_000_000] + ["map"] * 99
+    messages = log_messages([ros.encode("p/Top", {"frame": text, "number": n}, types) for n, text in enumerate(texts)])
+    readers = decoder(types, "p/Top", {"frame": None, "number": None})
+    tracemalloc.start()
+    table, malformed = decode_without_malformed(messages, readers.table)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert table is not None
+    assert table.column("number").tolist() == [n for n in range(500) if n != 400]
+    assert set(table.column("frame").tolist()) == {b"map"}
+    assert "has 4000001 bytes in frame, where a name has at most 4096" in str(malformed[400])
+    assert peak < 100e6
+
+
+def test_a_map_is_no_name() -> None:
+    """A text of more than 4096 letters is read whole, beside a shorter one."""
+    types = {"p/Top": "string opendrive"}
+    texts = ["<OpenDRIVE>" + "x" * 100_000, "", "short"]
+    messages = log_messages([ros.encode("p/Top", {"opendrive": text}, types) for text in texts])
+    table = decoder(types, "p/Top", {"opendrive": None}).table(messages)
+    assert [text.decode() for text in table.column("opendrive").tolist()] == texts

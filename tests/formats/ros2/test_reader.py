@@ -240,3 +240,9 @@ def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:
     assert (actors(trace)["9"]["length_m"], actors(trace)["9"]["width_m"]) == (4.5, 1.8)
     assert "length of 4.9 m, but the log states 4.5 m" in quality(trace)["ego_size"]["message"]
     assert "assumed_size" not in quality(trace)
+
+
+def test_the_time_of_a_gap_counts_from_the_start_of_the_drive(tmp_path: Path) -> None:
+    kept = [message for message in [*ego(), *others()] if not 0.51 < message[2] - T0 < 1.49]
+    message = quality(seen(tmp_path, kept))["gap"]["message"]
+    assert "the longest 1 s, the first from 0.5 s" in message

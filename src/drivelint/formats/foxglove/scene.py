@@ -216,6 +216,7 @@ def _recording(
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
     recording = Recording("foxglove-mcap", states, findings=findings, lost_times=lost_times)
+    recording.fixed_frame = fixed
     recording.notes = [f"positions are in the frame {fixed!r}"]
     recording.frame_times, recording.utc_start_ns = frame_times_and_start([rows])
     return recording

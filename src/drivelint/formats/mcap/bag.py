@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any, Final
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT_KEY, is_bag
-from drivelint.formats.mcap.storage import file_index, recorded_file
+from drivelint.formats.mcap.storage import file_index, recorded_file, recorded_span
 from drivelint.formats.ros2.messages import DETECTIONS_ROLE, MESSAGE_TYPES, ODOMETRY_ROLE, ROAD_USERS_ROLE, TRANSFORMS
 from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import name_list
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 COMPRESSED_SUFFIX: Final = ".zstd"
 """The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
+_MOST_BETWEEN_PARTS_NS: Final = 1_000_000_000
+"""A recorder goes on with the next file at once."""
 _MOST_LISTED_TOPICS: Final = 8
 """An error lists at most this many topics, and counts the others."""
 SUFFIX_BY_STORAGE: Final = {"mcap": ".mcap", "sqlite3": ".db3"}
@@ -78,6 +81,35 @@ def bag_files(path: Path) -> list[Path]:
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or remove the file from its folder"
         )
     return files
+
+
+def lone_part_findings(path: Path) -> list[QualityFinding]:
+    """Return a finding for a file that is a part of a bag, by its name and times, such as `drive_1.mcap`, but has no `metadata.yaml`.
+
+    A recorder writes `metadata.yaml` when it ends, so it is missing after a crash.
+    """
+    name, _, number = path.stem.rpartition("_")
+    if path.is_dir() or not number.isdecimal() or (path.parent / METADATA_FILE).exists():
+        return []
+    before, after = (path.with_name(f"{name}_{int(number) + step}{path.suffix}") for step in (-1, 1))
+    if not (_continues(before, path) or _continues(path, after)):
+        return []
+    message = (
+        f"one of several parts of a bag without {METADATA_FILE}: it is a drive of its own, cut where the part begins and ends: "
+        f"to judge the bag as one drive, first run ros2 bag reindex {quote(str(path.parent))}"
+    )
+    return [QualityFinding("bag_part", "warning", message)]
+
+
+def _continues(first: Path, second: Path) -> bool:
+    """Return whether the second file begins when the first ends; False if a file is missing, or has no index."""
+    if not (first.is_file() and second.is_file()):
+        return False
+    with suppress(TraceError, OSError, ValueError):
+        earlier, later = recorded_span(first), recorded_span(second)
+        if earlier is not None and later is not None:
+            return abs(later[0] - earlier[1]) <= _MOST_BETWEEN_PARTS_NS
+    return False
 
 
 def _bag_file(folder: Path, name: str) -> Path | None:

@@ -31,6 +31,18 @@ def file_index(path: Path) -> Summary:
     return read_index(path)
 
 
+def recorded_span(path: Path) -> tuple[int, int] | None:
+    """Return the first and the last log time of a file by its index, or None if it has none. Errors: `TraceError`."""
+    if _is_sqlite(path):
+        from drivelint.formats.sqlite_bag.database import open_database
+
+        with open_database(path) as connection:
+            first, last = connection.execute("SELECT min(timestamp), max(timestamp) FROM messages").fetchone()
+        return (first, last) if isinstance(first, int) and isinstance(last, int) else None
+    chunks = read_index(path).chunks.values()
+    return (min(chunk[1] for chunk in chunks), max(chunk[2] for chunk in chunks)) if chunks else None
+
+
 def _is_sqlite(path: Path) -> bool:
     try:
         return is_sqlite(path)

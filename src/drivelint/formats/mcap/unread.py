@@ -33,11 +33,19 @@ class UnreadTopics:
         n = self.topics.get(channel.topic, ("", "", 0))[2]
         self.topics[channel.topic] = kind, why, n + 1
 
+    def discard(self, kind: str) -> None:
+        """Forget the topics of a kind."""
+        self.topics = {topic: what for topic, what in self.topics.items() if what[0] != kind}
+
+    def texts(self) -> list[str]:
+        """Return for each topic why it is not read."""
+        return [_topic_text(topic, *what) for topic, what in sorted(self.topics.items())]
+
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
         return [
-            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: its content is unknown", what[2])
-            for topic, what in sorted(self.topics.items())
+            QualityFinding("unread_topic", "error", f"{text}: its content is unknown", what[2])
+            for text, (_, what) in zip(self.texts(), sorted(self.topics.items()), strict=True)
         ]
 
     def refuse_kinds(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:

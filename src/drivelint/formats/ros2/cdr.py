@@ -48,6 +48,10 @@ MAX_KEPT_NUMBERS = 3
 _MOST_ALIGNMENT_BYTES = 8
 _PADDING_BY_LENGTH: Final = [b"\0" * n for n in range(_MOST_ALIGNMENT_BYTES)]
 _TEXT_CODE = "S1"
+MOST_NAME_BYTES = 4096
+"""The longest text that can be the name of a frame, a class or an actor. Each text of a batch takes as much memory as the longest."""
+_LONG_TEXTS: Final = frozenset({"opendrive"})
+"""Members whose text is not a name, but a whole map."""
 _SIZE_BY_TYPE: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
 """Primitive or text type -> its size in bytes; 0: variable."""
 
@@ -281,6 +285,8 @@ class _MessageBatch:
                 if step.size > 4:  # a length is four bytes, and stands at a multiple of four
                     cursor += np.where(length > 0, -cursor & (step.size - 1), 0)
                 if step.keep is not None:
+                    if step.code == _TEXT_CODE:
+                        self._check_names(step.keep, length, message)
                     walk.start[i], walk.length[i] = cursor.copy(), length
                 cursor += length * (step.size * step.per_item)
             else:
@@ -340,10 +346,24 @@ class _MessageBatch:
     def _texts(self, start: Offsets, length: Offsets) -> NDArray[Any]:
         """Return texts as fixed-width bytes; numpy drops the zero byte that ends each text."""
         width = max(int(length.max(initial=0)), 1)
+        if width > MOST_NAME_BYTES:  # few texts, for which an index of every letter would take eight times their size
+            rows = np.zeros((len(start), width), np.uint8)
+            for row, first, n in zip(rows, start.tolist(), length.tolist(), strict=True):
+                row[:n] = self._bytes[first : first + n]
+            return rows.view(f"S{width}").reshape(-1)
         place = np.arange(width)
         index = np.minimum(start[:, None] + place, len(self._bytes) - 1)
         letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
         return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
+
+    def _check_names(self, path: str, length: Offsets, message: Rows) -> None:
+        """Check that texts are short enough to be names. One long text would multiply the memory of its whole batch."""
+        beyond = length > MOST_NAME_BYTES
+        if beyond.any() and path.rpartition(".")[2] not in _LONG_TEXTS:
+            i = int(np.argmax(beyond))
+            raise self._misfit_error(
+                int(message[i]), f"has {length[i]} bytes in {path}, where a name has at most {MOST_NAME_BYTES}"
+            )
 
     def _check_within_message(self, reach: Offsets, end: Offsets, message: Rows) -> None:
         beyond = reach > end

@@ -61,6 +61,9 @@ class Log:
         self.notes: list[str] = []
         self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
+        self.undefined_ego = (
+            UnreadTopics()
+        )  # odometry and transforms without a definition, beside a topic that the user chose
         self.has_carla_messages = False
         self.is_sqlite = False
         self.ego_frame = ""  # the frame that places the ego, in a log without odometry
@@ -94,9 +97,12 @@ class Log:
                         f"{file.name} has no message definitions: those of drivelint are used for {name_list(kinds)}"
                     )
             parts.append(container)
+        if not set(self.requested_topics).isdisjoint(self.topics.get(ODOMETRY, ())):
+            self.undefined_ego.discard(ODOMETRY)  # the user chose other odometry
         self.findings += [
             *missing_message_findings(self.path, parts, lambda _, kind: kind in MESSAGE_TYPES),
             *self.unread.findings(),
+            *self.undefined_ego.findings(),
         ]
         self.lost_times = lost_times_of_parts([(part.path, part.losses) for part in parts])
 
@@ -124,7 +130,10 @@ class Log:
         return kind
 
     def _is_defined(self, path: Path, channel: Channel, schema: Schema, kind: str) -> bool:
-        """Return whether a channel that is read has a message definition; without it, road users and poses of the ego are an error."""
+        """Return whether a channel that is read has a message definition.
+
+        Without it, road users and poses of the ego are an error, or if the user chose another topic, poses of the ego are reported.
+        """
         if schema.encoding:
             if schema.encoding != "ros2msg":
                 raise TraceError(
@@ -138,6 +147,8 @@ class Log:
             raise TraceError(
                 f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {CONVERSION_REMEDY}"
             )
+        elif kind not in OBJECT_CONVERTERS:
+            self.undefined_ego.add_undefined(channel, kind)
         return False
 
     def refuse_unknown_topics(self) -> None:

@@ -84,6 +84,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     if not sum(map(len, parts.values())):
         raise _nothing_to_read_error(path, log)
     findings = log.findings
+    findings += bag.lone_part_findings(path)
     findings += [] if objects else [_no_road_users_finding(log)]
     own_times = choose_clock(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
@@ -127,18 +128,25 @@ def read(path: Path, options: IngestOptions) -> Recording:
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
             all_states.codes["indicator"][mine] = ros_ego.indicator_codes(all_states.t_ns[mine], reports)
         recording.events = ros_ego.engagement_events(reports, ego)
-    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
-        t_ns = recording.states.t_ns
-        span_ns = int(t_ns.min()), int(t_ns.max())
-        recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
-        recording.findings += new_findings
+    _add_signals(recording, log, own_times=own_times)
     recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.times_of_topics(parts, own_times=own_times), TOPICS_APART_NS
     recording.embedded_map, trouble = single_map(_topic_by_map(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = frame_times_and_start(list(parts.values()))
+    recording.fixed_frame = fixed
+    recording.why_no_ego = log.why_no_ego and f"no {ODOMETRY}, and {log.why_no_ego}"
     recording.notes += [*log.notes, *_missing_ego_notes(log), f"positions are in the frame {fixed!r}"]
     return recording
+
+
+def _add_signals(recording: Recording, log: Log, *, own_times: bool) -> None:
+    """Add the states of the traffic lights, if the log has them."""
+    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
+        t_ns = recording.states.t_ns
+        span_ns = int(t_ns.min()), int(t_ns.max())
+        recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
+        recording.findings += new_findings
 
 
 def _transform_tree(log: Log, *, own_times: bool) -> TransformTree:
@@ -218,7 +226,7 @@ def _ego_rows_by_transforms(
     """Return the ego's rows by the transforms of its frame, if a chain leads to it, and whether the box gave their centres."""
     found = ego_rows_or_reason(_transforms(log), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
     if isinstance(found, str):
-        log.why_no_ego = found
+        log.why_no_ego = "; ".join([found, *log.undefined_ego.texts()])
         return {}, False
     log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
     log.add_times(found.topic, found.rows)
