@@ -644,8 +644,8 @@ CREATE TABLE overtake (
     side INTEGER NOT NULL,            -- the overtaking side: 1 left, -1 right {position}
     vbp_id VARCHAR NOT NULL,          -- VBP: the vehicle being passed, or one that may be it {position}
     vbp_placed BOOLEAN NOT NULL,      -- the VBP's position was known at t0; false: only its presence is known {position}
-    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s. False: it may be one {position}
-    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before t0 exists, and the ego is inside the lane there {position}
+    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s; and the ego does not turn in at a junction. False: it may be one {position}
+    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before t0 exists, and the ego is inside the lane there; false if t0 may lie in a turn at a junction {position}
     t0_ns BIGINT NOT NULL,            -- t_pull_ns of the excursion: first step with a corner more than 0.05 m over the boundary or, after a look past the vehicle ahead, the step at which the ego pulls out {position}
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane {position}
     t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1; in an overtake astride the line, the first step within 0.1 m of the greatest excursion {position}
