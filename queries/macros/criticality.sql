@@ -64,6 +64,15 @@ CREATE OR REPLACE MACRO drift_s() AS 3.0;
 CREATE OR REPLACE MACRO lead_is_ahead(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
     gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
 
+-- Whether a motorcycle or bicycle may ride on the line beside the lead, between two lanes, and not behind the lead: its box may reach over
+-- the line, and its centre is not surely within the lead's width.
+CREATE OR REPLACE MACRO may_ride_on_line(actor_class, d_m, lat_half_m, lead_d_m, lead_lat_half_m, half_width_m) AS
+    coalesce(
+        actor_class IN ('motorcycle', 'bicycle') AND abs(d_m - lead_d_m) > lead_lat_half_m - measured_meeting_m()
+        AND sign(d_m - lead_d_m) * d_m + lat_half_m > half_width_m - surely_out_m(),
+        false
+    );
+
 -- Whether the lead will still be ahead when the ego arrives, at the present lateral speeds (positive to the left, from the heading relative
 -- to the corridor). It will not if one of the two pulls out or comes in beside the other.
 CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d_m, lead_lat_half_m, lead_lat_mps) AS
