@@ -524,6 +524,16 @@ CREATE TABLE oncoming (
 );
 
 -- lifetime: part
+CREATE TABLE velocity_bound (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    actor_id VARCHAR NOT NULL,        -- the ego or another actor, whose recorded velocity is in doubt (doubt)
+    t_ns BIGINT NOT NULL,             -- the step
+    least_mps DOUBLE,                 -- least speed that the actor can have there, by its velocities before and after the doubt; NULL: not known {velocity}
+    most_mps DOUBLE                   -- greatest speed, likewise {velocity}
+);
+
+-- lifetime: part
 CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -588,6 +598,8 @@ CREATE TABLE vehicle_ahead (
     ego_across_mps DOUBLE,            -- the ego's speed across the corridor, positive towards the vehicle {velocity}
     across_mps DOUBLE,                -- the vehicle's speed across the corridor, positive towards the ego {velocity}
     error_mps DOUBLE NOT NULL,        -- see lead {velocity}
+    closing_more_mps DOUBLE NOT NULL, -- by how much faster the two may come nearer than at the recorded speeds, where a velocity is in doubt; infinite: no bound; 0: no doubt {velocity}
+    closing_less_mps DOUBLE NOT NULL, -- by how much slower, likewise {velocity}
     joined_ns BIGINT,                 -- of the lead: the time since which it is the lead, if it or the ego changed lanes then. Of another vehicle: the later of its last cut-in and the ego's last lane change; NULL: it was ahead before, or its arrival was not seen {position}
     let_in_ns BIGINT,                 -- joined_ns, if the ego did not change lanes; of a vehicle other than the lead: its last cut-in {position}
     passes_by BOOLEAN,                -- at the present velocities, the two boxes pass each other without contact: where lanes turn or cross, a vehicle ahead along the lane may be out of the way; NULL: the meeting is more than 3 s away, or not known {position}

@@ -20,6 +20,12 @@ CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
 CREATE OR REPLACE MACRO sure_at_least(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
 CREATE OR REPLACE MACRO sure_at_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 
+-- By how much a value may be above the recorded one, if it is in doubt (`doubt_ns`, NULL: it is not): infinite without a bound.
+CREATE OR REPLACE MACRO above_mps(doubt_ns, most, recorded) AS
+    CASE WHEN doubt_ns IS NULL OR most <= recorded THEN 0.0::DOUBLE ELSE coalesce(most - recorded, 'inf'::DOUBLE) END;
+-- Whether a rule applies, if it was found with speeds that may be wrong by `doubt_mps`: a wrong speed must not excuse.
+CREATE OR REPLACE MACRO unless_in_doubt(applies, doubt_mps) AS CASE WHEN applies OR doubt_mps <= 0 THEN applies END;
+
 -- Whether the two may still touch: false if it is known that they pass each other, unknown if they may graze each other.
 CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
 
