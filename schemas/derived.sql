@@ -527,7 +527,7 @@ CREATE TABLE oncoming (
 CREATE TABLE velocity_bound (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    actor_id VARCHAR NOT NULL,        -- the ego or another actor, whose recorded velocity is in doubt (doubt)
+    object_id VARCHAR,                -- an actor whose recorded velocity is in doubt (doubt); NULL: the ego
     t_ns BIGINT NOT NULL,             -- the step
     least_mps DOUBLE,                 -- least speed that the actor can have there, by its velocities before and after the doubt; NULL: not known {velocity}
     most_mps DOUBLE                   -- greatest speed, likewise {velocity}

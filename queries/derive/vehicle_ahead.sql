@@ -132,8 +132,8 @@ SELECT
     above_mps(v.t_ns, -v.least_mps, -t.ego_speed_mps)
         + above_mps(o.t_ns, CASE WHEN t.oncoming THEN -along.least_mps WHEN NOT t.oncoming THEN along.most_mps END, along_mps(t.speed_mps, t.oncoming)) AS closing_less_mps
 FROM vehicle_or_doubt t
-LEFT JOIN velocity_bound v ON v.drive_id = t.drive_id AND v.ego_id = t.ego_id AND v.t_ns = t.t_ns AND v.actor_id = t.ego_id
-LEFT JOIN velocity_bound o ON o.drive_id = t.drive_id AND o.ego_id = t.ego_id AND o.t_ns = t.t_ns AND o.actor_id = t.object_id
-LEFT JOIN pair b ON b.drive_id = t.drive_id AND b.ego_id = t.ego_id AND b.t_ns = t.t_ns AND b.object_id = o.actor_id
+LEFT JOIN velocity_bound v ON v.drive_id = t.drive_id AND v.ego_id = t.ego_id AND v.t_ns = t.t_ns AND v.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = t.drive_id AND o.ego_id = t.ego_id AND o.t_ns = t.t_ns AND o.object_id = t.object_id
+LEFT JOIN pair b ON b.drive_id = t.drive_id AND b.ego_id = t.ego_id AND b.t_ns = t.t_ns AND b.object_id = o.object_id
 CROSS JOIN LATERAL (SELECT along_lane_mps(o.least_mps, b.heading_diff_rad) AS least_mps, o.most_mps) along
 LEFT JOIN miss_check c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id

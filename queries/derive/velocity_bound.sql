@@ -17,7 +17,7 @@ credible_sample AS (
     WHERE s.speed_mps IS NOT NULL
 )
 SELECT
-    x.drive_id, x.ego_id, x.actor_id, x.t_ns,
+    x.drive_id, x.ego_id, nullif(x.actor_id, x.ego_id) AS object_id, x.t_ns,
     CASE WHEN x.is_jolt AND b.t_ns + a.t_ns IS NOT NULL THEN greatest(0.0, b.speed_mps - room.since_mps, a.speed_mps - room.until_mps) END AS least_mps,
     CASE WHEN x.is_jolt AND b.t_ns + a.t_ns IS NOT NULL THEN least(b.speed_mps + room.since_mps, a.speed_mps + room.until_mps) END AS most_mps
 FROM doubted_step x

@@ -29,8 +29,8 @@ SELECT f.drive_id, f.ego_id, f.t_ns, f.object_id,
         CASE WHEN b.t_ns IS NULL AND o.t_ns IS NULL THEN 0 ELSE 1 END
     ) AS applies
 FROM following f
-LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.actor_id = f.ego_id
-LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.actor_id = f.object_id
+LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.object_id = f.object_id
 
 -- @condition
 -- With a velocity in doubt, the rule can be kept, by the greatest speed that the ego can have, but not broken.
@@ -38,5 +38,5 @@ SELECT f.drive_id, f.ego_id, f.t_ns, f.object_id, thinking_distance_m(f.ego_spee
     CASE WHEN b.t_ns IS NULL AND o.t_ns IS NULL OR f.gap_m >= thinking_distance_m(CASE WHEN b.t_ns IS NULL THEN f.ego_speed_mps ELSE b.most_mps END) THEN f.gap_m END AS observed,
     CASE WHEN (b.t_ns IS NOT NULL OR o.t_ns IS NOT NULL) AND (f.gap_m >= thinking_distance_m(CASE WHEN b.t_ns IS NULL THEN f.ego_speed_mps ELSE b.most_mps END)) IS NOT true THEN why('velocity_in_doubt', {'object_id': f.object_id}) END AS reason
 FROM following f
-LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.actor_id = f.ego_id
-LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.actor_id = f.object_id
+LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.object_id = f.object_id
