@@ -47,7 +47,7 @@ vehicle_or_doubt AS (
     UNION ALL BY NAME
     SELECT
         m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
-        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
+        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= least_mean_ns() THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
         m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
         filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
         -- greatest() ignores NULL, as intended here.
