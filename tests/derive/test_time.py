@@ -154,6 +154,6 @@ def test_a_clock_that_jitters_leaves_no_hole_in_the_acceleration_of_the_lead() -
     lead = moving("x", way, t, 130 + 10 * t - t * t / 4, way.own + 1.5, kind="motorcycle", width=0.6)
     further = moving("y", way, t, 160 + 10 * t - t * t / 4, way.own)
     con = derived(drive([ego, lead, further], way.environment), tables=["lead", "vehicle_ahead"])
-    for table, n in (("lead", 34), ("vehicle_ahead", 68)):
-        found = rows(con, f"SELECT accel_mps2 FROM {table} WHERE t_ns > 650_000_000 AND object_id IS NOT NULL")
+    for name, n in (("lead", 34), ("vehicle_ahead", 68)):
+        found = rows(con, f"SELECT accel_mps2 FROM {name} WHERE t_ns > 650_000_000 AND object_id IS NOT NULL")
         assert [row["accel_mps2"] for row in found] == pytest.approx([-0.5] * n, abs=0.1)

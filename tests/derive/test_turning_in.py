@@ -40,8 +40,19 @@ def test_an_ego_that_turns_in_does_not_surely_overtake_who_is_parked_there(hand:
     way = cross(hand)["wn" if hand == "rht" else "ws"]
     parked_s = ARM + TURN + 14
     parked = standing("p", way, times(12.0), parked_s, way.own - 1.3 * way.over)
-    ego = truck(way, [(ARM, 0), (ARM + 6, 2.0), (ARM + TURN - 4, 2.0), (parked_s - 9, 0.7), (parked_s - 4, 1.0), (parked_s + 4, 1.0),
-        (parked_s + 10, 0)], start)
+    ego = truck(
+        way,
+        [
+            (ARM, 0),
+            (ARM + 6, 2.0),
+            (ARM + TURN - 4, 2.0),
+            (parked_s - 9, 0.7),
+            (parked_s - 4, 1.0),
+            (parked_s + 4, 1.0),
+            (parked_s + 10, 0),
+        ],
+        start,
+    )
     found, verdicts = judged_rules(way, ego, parked)
     assert found == [("p", False, False)]
     assert "fail" not in set.union(*verdicts.values())
@@ -65,7 +76,11 @@ def test_an_ego_that_pulls_out_after_the_turn_or_where_the_road_leads_straight_o
 def test_a_log_that_begins_out_of_the_lane_in_a_junction_may_begin_in_a_turn(hand: str) -> None:
     way = cross(hand)["we"]
     parked = standing("p", way, times(12.0), ARM + 2 * R, way.own - 1.3 * way.over)
-    ego = truck(way, [(ARM, 2.0), (ARM + 2 * R - 12, 2.0), (ARM + 2 * R - 8, 0.7), (ARM + 2 * R - 4, 1.0), (ARM + 2 * R + 14, 0)], ARM + 6)
+    ego = truck(
+        way,
+        [(ARM, 2.0), (ARM + 2 * R - 12, 2.0), (ARM + 2 * R - 8, 0.7), (ARM + 2 * R - 4, 1.0), (ARM + 2 * R + 14, 0)],
+        ARM + 6,
+    )
     found, verdicts = judged_rules(way, ego, parked)
     assert found == [("p", False, False)]
     assert "fail" not in set.union(*verdicts.values())
