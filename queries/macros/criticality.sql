@@ -63,7 +63,7 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
     END;
 
 -- An acceleration is a mean over half a second, or over this time at least: four steps at 10 samples a second, whose times jitter.
-CREATE OR REPLACE MACRO least_mean_ns() AS 390_000_000;
+CREATE OR REPLACE MACRO least_mean_ns() AS 398_000_000;
 
 -- Time for which the present lateral speed predicts an actor's position.
 CREATE OR REPLACE MACRO drift_s() AS 3.0;
