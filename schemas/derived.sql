@@ -524,6 +524,16 @@ CREATE TABLE oncoming (
 );
 
 -- lifetime: part
+CREATE TABLE velocity_bound (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    object_id VARCHAR,                -- an actor whose recorded velocity is in doubt (doubt); NULL: the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    least_mps DOUBLE,                 -- least speed that the actor can have there, by its velocities before and after the doubt; NULL: not known {velocity}
+    most_mps DOUBLE                   -- greatest speed, likewise {velocity}
+);
+
+-- lifetime: part
 CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
@@ -588,6 +598,8 @@ CREATE TABLE vehicle_ahead (
     ego_across_mps DOUBLE,            -- the ego's speed across the corridor, positive towards the vehicle {velocity}
     across_mps DOUBLE,                -- the vehicle's speed across the corridor, positive towards the ego {velocity}
     error_mps DOUBLE NOT NULL,        -- see lead {velocity}
+    closing_more_mps DOUBLE NOT NULL, -- by how much faster the two may come nearer than at the recorded speeds, where a velocity is in doubt; infinite: no bound; 0: no doubt {velocity}
+    closing_less_mps DOUBLE NOT NULL, -- by how much slower, likewise {velocity}
     joined_ns BIGINT,                 -- of the lead: the time since which it is the lead, if it or the ego changed lanes then. Of another vehicle: the later of its last cut-in and the ego's last lane change; NULL: it was ahead before, or its arrival was not seen {position}
     let_in_ns BIGINT,                 -- joined_ns, if the ego did not change lanes; of a vehicle other than the lead: its last cut-in {position}
     passes_by BOOLEAN,                -- at the present velocities, the two boxes pass each other without contact: where lanes turn or cross, a vehicle ahead along the lane may be out of the way; NULL: the meeting is more than 3 s away, or not known {position}
@@ -644,8 +656,8 @@ CREATE TABLE overtake (
     side INTEGER NOT NULL,            -- the overtaking side: 1 left, -1 right {position}
     vbp_id VARCHAR NOT NULL,          -- VBP: the vehicle being passed, or one that may be it {position}
     vbp_placed BOOLEAN NOT NULL,      -- the VBP's position was known at t0; false: only its presence is known {position}
-    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s. False: it may be one {position}
-    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before t0 exists, and the ego is inside the lane there {position}
+    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s; and the ego does not turn in at a junction. False: it may be one {position}
+    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before t0 exists, and the ego is inside the lane there; false if t0 may lie in a turn at a junction {position}
     t0_ns BIGINT NOT NULL,            -- t_pull_ns of the excursion: first step with a corner more than 0.05 m over the boundary or, after a look past the vehicle ahead, the step at which the ego pulls out {position}
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane {position}
     t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1; in an overtake astride the line, the first step within 0.1 m of the greatest excursion {position}

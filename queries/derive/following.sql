@@ -17,7 +17,10 @@ candidate AS (
         CASE
             WHEN v.t_ns IS NULL OR NOT v.known THEN NULL
             WHEN v.object_id IS NULL OR m.is_sure THEN false
-            ELSE CASE WHEN m.t_ns IS NULL THEN true END AND v.in_lane AND v.gap_m >= 0 AND NOT v.oncoming AND (
+            ELSE CASE WHEN m.t_ns IS NULL THEN true END
+                -- A motorcycle or bicycle on the line may ride between the lanes, past this vehicle.
+                AND CASE WHEN NOT may_ride_on_line(a.actor_class, e.d_m, e.lat_half_m, p.d_m, p.lat_half_m, p.half_width_m) THEN true END
+                AND v.in_lane AND v.gap_m >= 0 AND NOT v.oncoming AND (
                 -- A vehicle that stands must be in the ego's way, both now and when the ego gets there. Otherwise the ego steers round it,
                 -- or passes it at the edge of the lane.
                 v.across_m < 0 AND (v.speed_mps > standing_mps() OR v.passes_by IS DISTINCT FROM true AND on_course(
@@ -32,6 +35,7 @@ candidate AS (
     LEFT JOIN manoeuvre_step m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns
     LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
     LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
+    LEFT JOIN actor a ON a.drive_id = s.drive_id AND a.actor_id = s.ego_id
 )
 SELECT drive_id, ego_id, t_ns, object_id, gap_m, ego_speed_mps, speed_mps, joined_ns, let_in_ns, follows, free_m
 FROM (

@@ -1,5 +1,6 @@
 -- Every actor that is or may be present without a position on the corridor, with a lower bound of its distance. After its last and before
--- its next sighting, it comes nearer at 60 m/s at most, within the limits of its tyres. An actor that drives along the road, in the ego's
+-- its next sighting, it comes nearer at 60 m/s at most, within the limits of its tyres. Between two sightings, these limits keep a vehicle
+-- near the straight line from one to the other, and beyond both near that through two sightings, whatever its velocities. An actor that drives along the road, in the ego's
 -- direction or against it, neither turns round nor reverses. If the log is assumed to record every actor in plain view (data_log.in_sight),
 -- an actor that is not recorded for a while is not in plain view. An actor off all lanes is not listed if the corridor extends further than
 -- the actor's distance, ahead and behind, without a hole: the actor is then certainly off the road.
@@ -66,6 +67,9 @@ sighting AS (
                 WHEN NOT p.off_level AND h.chain_id IS NULL AND p.distance_m < least(z.end_m - e.s_m, e.s_m - z.begin_m) THEN strip_m() - half_diagonal_m - widest_lane_half_m()
             END
         } AS beside,
+        -- Sightings half a second before and after this one.
+        last_value({'t_ns': p.t_ns, 'x_m': p.x_m, 'y_m': p.y_m}) OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND 490_000_000 PRECEDING) AS earlier,
+        first_value({'t_ns': p.t_ns, 'x_m': p.x_m, 'y_m': p.y_m}) OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns RANGE BETWEEN 490_000_000 FOLLOWING AND 1_000_000_000 FOLLOWING) AS later,
         -- Position along the road of an object that moves in the ego's direction (1) or against it (-1).
         CASE
             WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' THEN NULL
@@ -99,6 +103,15 @@ step_with_sightings AS (
         (m.t_ns - b.t_ns) / 1e9 AS since_s, (a.t_ns - m.t_ns) / 1e9 AS until_s,
         coalesce(b.beside.chain_id = e.chain_id AND b.beside.m > comes_beside_m(m.actor_class, b.beside.across_mps, b.beside.v_mps, since_s), false)
             OR coalesce(a.beside.chain_id = e.chain_id AND a.beside.m > comes_beside_m(m.actor_class, a.beside.across_mps, a.beside.v_mps, until_s), false) AS beside_lane,
+        -- The place on the straight line between the two sightings, and how far from it a vehicle can be.
+        b.x_m + (a.x_m - b.x_m) * since_s / nullif(since_s + until_s, 0) - e.x_m AS between_x_m, b.y_m + (a.y_m - b.y_m) * since_s / nullif(since_s + until_s, 0) - e.y_m AS between_y_m,
+        CASE WHEN is_vehicle(m.actor_class) THEN measured_m() + line_error_m(since_s, until_s) END AS between_error_m,
+        -- The same beyond the line through two sightings half a second apart.
+        (b.t_ns - b.earlier.t_ns) / 1e9 AS back_s, (a.later.t_ns - a.t_ns) / 1e9 AS on_s,
+        b.x_m + (b.x_m - b.earlier.x_m) * since_s / back_s - e.x_m AS since_x_m, b.y_m + (b.y_m - b.earlier.y_m) * since_s / back_s - e.y_m AS since_y_m,
+        a.x_m + (a.x_m - a.later.x_m) * until_s / on_s - e.x_m AS until_x_m, a.y_m + (a.y_m - a.later.y_m) * until_s / on_s - e.y_m AS until_y_m,
+        CASE WHEN is_vehicle(m.actor_class) THEN measured_m() * (1 + 2 * since_s / back_s) + line_error_m(since_s, since_s + back_s) END AS since_error_m,
+        CASE WHEN is_vehicle(m.actor_class) THEN measured_m() * (1 + 2 * until_s / on_s) + line_error_m(until_s, until_s + on_s) END AS until_error_m,
         b.x_m + b.vx_mps * since_s - e.x_m AS last_x_m, b.y_m + b.vy_mps * since_s - e.y_m AS last_y_m, a.x_m - a.vx_mps * until_s - e.x_m AS next_x_m, a.y_m - a.vy_mps * until_s - e.y_m AS next_y_m
     FROM missing_step m
     ASOF LEFT JOIN sighting b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.object_id = m.object_id AND b.t_ns <= m.t_ns
@@ -128,7 +141,7 @@ distance_bound AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late, beside_lane, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
         half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END) AS half_sizes_m,
-        greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
+        greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), sqrt(between_x_m ** 2 + between_y_m ** 2) - between_error_m, sqrt(since_x_m ** 2 + since_y_m ** 2) - since_error_m, sqrt(until_x_m ** 2 + until_y_m ** 2) - until_error_m, ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_diagonal_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
         coalesce(CASE WHEN t_before_ns IS NOT NULL THEN last_place.direction = 1 ELSE true END AND CASE WHEN t_after_ns IS NOT NULL THEN next_place.direction = 1 ELSE true END AND coalesce(t_before_ns, t_after_ns) IS NOT NULL, false) AS along

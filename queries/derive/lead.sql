@@ -75,8 +75,8 @@ run_origin AS (
 SELECT
     r.drive_id, r.ego_id, r.t_ns, r.nearest.object_id AS object_id, r.nearest.actor_class AS actor_class, r.nearest.gap_m AS gap_m,
     r.nearest.speed_mps AS speed_mps,
-    -- Mean over half a second. Less than 0.4 s, at the start of the log, is not enough.
-    CASE WHEN f.actor_id IS NULL AND r.t_ns - r.t_half_second_ns >= 400_000_000 THEN 1e9 * (r.nearest.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_second_ns) END AS accel_mps2,
+    -- Mean over half a second. Less than least_mean_ns, at the start of the log, is not enough.
+    CASE WHEN f.actor_id IS NULL AND r.t_ns - r.t_half_second_ns >= least_mean_ns() THEN 1e9 * (r.nearest.speed_mps - h.speed_mps) / (r.t_ns - r.t_half_second_ns) END AS accel_mps2,
     r.ego_speed_mps, x.left_in_m < 0 AND x.right_in_m < 0 AS in_lane, r.nearest.oncoming AS oncoming,
     r.nearest.across_m AS across_m, r.nearest.ego_across_mps AS ego_across_mps, r.nearest.across_mps AS across_mps,
     filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,

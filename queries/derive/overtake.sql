@@ -2,7 +2,8 @@
 -- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre crossed the line. A smaller excursion that was
 -- completely seen is only a wobble. Every further vehicle that the ego passes in the same excursion counts, too.
 WITH overtaking_excursion AS (
-    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
+    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps,
+        e.in_junction, e.yaw_rad - e.heading_diff_rad AS lane_rad
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
@@ -12,7 +13,7 @@ WITH overtaking_excursion AS (
 ),
 -- The positions of the ego and all objects during an excursion, read once from the large table pair. Later queries read these rows by key.
 pair_in_excursion AS MATERIALIZED (
-    SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, p.*
+    SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, e.yaw_rad - e.heading_diff_rad AS lane_rad, p.*
     FROM overtaking_excursion g
     JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns >= g.t0_ns AND e.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
     JOIN (
@@ -88,14 +89,18 @@ overtaken_candidate AS (
 ),
 passing AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > coalesce(p.front_s_m, p.s_m)) AS passed,
-        count(p.front_s_m) AS n_seen
+        count(p.front_s_m) AS n_seen,
+        -- The direction of the ego's lane where the ego comes level with the vehicle's rear, or at the end of the excursion.
+        coalesce(min({'t_ns': p.t_ns, 'rad': p.lane_rad}) FILTER (p.ego_front_m >= p.rear_s_m), max({'t_ns': p.t_ns, 'rad': p.lane_rad})).rad AS level_lane_rad
     FROM overtaken_candidate c
     JOIN pair_in_excursion p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     GROUP BY ALL
 ),
 overtaken_vehicle AS (
     SELECT
-        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed
+        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed,
+        -- An ego that turns at a junction cuts the corner or swings wide there. It did not leave its lane for a vehicle beyond the turn.
+        coalesce(g.in_junction AND (NOT g.begin_seen OR abs(wrap_rad(a.level_lane_rad - g.lane_rad)) > along_lane_rad()), false) AS turns_in
     FROM overtaken_candidate c
     JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
@@ -133,10 +138,10 @@ SELECT
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
     k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed,
     -- The ego may only have followed a vehicle that it did not pass: on its own side of the road, it changes lane or sways behind that
-    -- vehicle.
-    CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
+    -- vehicle. An ego that turns in may not have pulled out at all.
+    NOT k.turns_in AND CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
         ELSE k.is_placed AND coalesce(k.over_against, false) AND (k.begin_seen AND k.centre_over OR w.stays_out)
-    END AS sure, k.begin_seen,
+    END AS sure, k.begin_seen AND NOT k.turns_in AS begin_seen,
     k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'

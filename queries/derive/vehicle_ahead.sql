@@ -47,7 +47,7 @@ vehicle_or_doubt AS (
     UNION ALL BY NAME
     SELECT
         m.drive_id, m.ego_id, m.t_ns, m.object_id, false AS nearest, true AS known, p.gap_m, p.speed_mps,
-        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
+        CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= least_mean_ns() THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
         m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
         filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
         -- greatest() ignores NULL, as intended here.
@@ -125,6 +125,15 @@ miss_check AS (
     FROM box_contact
     GROUP BY drive_id, ego_id, t_ns, object_id
 )
-SELECT t.*, c.passes_by, c.grazes
+SELECT
+    t.*, c.passes_by, c.grazes,
+    above_mps(v.t_ns, v.most_mps, t.ego_speed_mps)
+        + above_mps(o.t_ns, CASE WHEN t.oncoming THEN along.most_mps WHEN NOT t.oncoming THEN -along.least_mps END, along_mps(t.speed_mps, NOT t.oncoming)) AS closing_more_mps,
+    above_mps(v.t_ns, -v.least_mps, -t.ego_speed_mps)
+        + above_mps(o.t_ns, CASE WHEN t.oncoming THEN -along.least_mps WHEN NOT t.oncoming THEN along.most_mps END, along_mps(t.speed_mps, t.oncoming)) AS closing_less_mps
 FROM vehicle_or_doubt t
+LEFT JOIN velocity_bound v ON v.drive_id = t.drive_id AND v.ego_id = t.ego_id AND v.t_ns = t.t_ns AND v.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = t.drive_id AND o.ego_id = t.ego_id AND o.t_ns = t.t_ns AND o.object_id = t.object_id
+LEFT JOIN pair b ON b.drive_id = t.drive_id AND b.ego_id = t.ego_id AND b.t_ns = t.t_ns AND b.object_id = o.object_id
+CROSS JOIN LATERAL (SELECT along_lane_mps(o.least_mps, b.heading_diff_rad) AS least_mps, o.most_mps) along
 LEFT JOIN miss_check c ON c.drive_id = t.drive_id AND c.ego_id = t.ego_id AND c.t_ns = t.t_ns AND c.object_id = t.object_id

@@ -67,6 +67,9 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
         WHEN actor_class IS NULL OR actor_class = 'object' THEN greatest(10.0 * t_s, 5.0 * t_s * t_s)
         ELSE 5.0 * t_s * t_s
     END;
+-- Upper bound of the distance between a vehicle and the straight line through two sightings, at a time that is t_s from one of them and
+-- other_s from the other. It changes its velocity by at most 10 m/s2.
+CREATE OR REPLACE MACRO line_error_m(t_s, other_s) AS 5.0 * t_s * other_s;
 
 -- How much nearer to a lane an actor can come within t seconds after (or before) it is seen beside the lane: by its lateral speed, by
 -- steering or braking, and by a bend of the lane (50 m of radius).

@@ -20,6 +20,12 @@ CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
 CREATE OR REPLACE MACRO sure_at_least(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
 CREATE OR REPLACE MACRO sure_at_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 
+-- By how much a value may be above the recorded one, if it is in doubt (`doubt_ns`, NULL: it is not): infinite without a bound.
+CREATE OR REPLACE MACRO above_mps(doubt_ns, most, recorded) AS
+    CASE WHEN doubt_ns IS NULL OR most <= recorded THEN 0.0::DOUBLE ELSE coalesce(most - recorded, 'inf'::DOUBLE) END;
+-- Whether a rule applies, if it was found with speeds that may be wrong by `doubt_mps`: a wrong speed must not excuse.
+CREATE OR REPLACE MACRO unless_in_doubt(applies, doubt_mps) AS CASE WHEN applies OR doubt_mps <= 0 THEN applies END;
+
 -- Whether the two may still touch: false if it is known that they pass each other, unknown if they may graze each other.
 CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
 
@@ -56,6 +62,9 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
         ELSE gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
     END;
 
+-- An acceleration is a mean over half a second, or over this time at least: four steps at 10 samples a second, whose times jitter.
+CREATE OR REPLACE MACRO least_mean_ns() AS 398_000_000;
+
 -- Time for which the present lateral speed predicts an actor's position.
 CREATE OR REPLACE MACRO drift_s() AS 3.0;
 
@@ -63,6 +72,15 @@ CREATE OR REPLACE MACRO drift_s() AS 3.0;
 -- alongside the ego is not ahead.
 CREATE OR REPLACE MACRO lead_is_ahead(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
     gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
+
+-- Whether a motorcycle or bicycle may ride on the line beside the lead, between two lanes, and not behind the lead: its box may reach over
+-- the line, and its centre is not surely within the lead's width.
+CREATE OR REPLACE MACRO may_ride_on_line(actor_class, d_m, lat_half_m, lead_d_m, lead_lat_half_m, half_width_m) AS
+    coalesce(
+        actor_class IN ('motorcycle', 'bicycle') AND abs(d_m - lead_d_m) > lead_lat_half_m - measured_meeting_m()
+        AND sign(d_m - lead_d_m) * d_m + lat_half_m > half_width_m - surely_out_m(),
+        false
+    );
 
 -- Whether the lead will still be ahead when the ego arrives, at the present lateral speeds (positive to the left, from the heading relative
 -- to the corridor). It will not if one of the two pulls out or comes in beside the other.

@@ -291,3 +291,25 @@ def test_a_wrong_way_round_wreck_in_the_lane_is_not_followed() -> None:
     ego = moving("ego", way, t, 100 + 10 * t, way.own)
     found = following(way, ego, standing("x", way, t, 200, way.own, turned=math.pi))
     assert {row["follows"] for row in found} == {False}
+
+
+@HANDS
+@pytest.mark.parametrize(
+    ("kind", "aside", "lead_aside", "follows"),
+    [
+        ("motorcycle", 1.1, 0.0, None),
+        ("bicycle", -1.1, 0.0, None),
+        ("motorcycle", 0.8, 0.0, True),  # in the wheel track
+        ("motorcycle", 1.1, 0.6, True),  # behind the other's width, which is beside the line as well
+        ("car", 1.1, 0.0, True),
+    ],
+)
+def test_a_rider_on_the_line_may_ride_between_the_lanes(
+    hand: str, kind: str, aside: float, lead_aside: float, follows: bool | None
+) -> None:
+    """The lane's edge is at 1.75 m, the side of the vehicle ahead at 0.9 m; the rider is 0.8 m wide."""
+    way = road(hand=hand)
+    t = times(1.0)
+    ego = moving("ego", way, t, 100 + 10 * t, way.own + way.over * aside, length=2.1, width=0.8, kind=kind)
+    found = following(way, ego, moving("x", way, t, 115 + 10 * t, way.own + way.over * lead_aside))
+    assert {(row["object_id"], row["follows"]) for row in found} == {("x", follows)}

@@ -144,3 +144,16 @@ def test_an_actor_is_recorded_in_stretches_without_a_hole() -> None:
         ("ego", 0.0, 4.0), ("ego", 4.1, 5.0),
         ("x", 0.0, 1.0), ("x", 1.5, 2.9), ("x", 3.5, 4.0), ("x", 4.1, 5.0),
     ]  # fmt: skip
+
+
+def test_a_clock_that_jitters_leaves_no_hole_in_the_acceleration_of_the_lead() -> None:
+    """Half a second is then a little longer, and four steps are a little shorter, than at an even clock."""
+    way = road()
+    t = times(4.0) + np.tile([0.0, 1e-5, -1e-5, 0.0, -1e-5, 1e-5, 0.0], 6)[:41]
+    ego = moving("ego", way, t, 100 + 10 * t, way.own)
+    lead = moving("x", way, t, 130 + 10 * t - t * t / 4, way.own + 1.5, kind="motorcycle", width=0.6)
+    further = moving("y", way, t, 160 + 10 * t - t * t / 4, way.own)
+    con = derived(drive([ego, lead, further], way.environment), tables=["lead", "vehicle_ahead"])
+    for name, n in (("lead", 34), ("vehicle_ahead", 68)):
+        found = rows(con, f"SELECT accel_mps2 FROM {name} WHERE t_ns > 650_000_000 AND object_id IS NOT NULL")
+        assert [row["accel_mps2"] for row in found] == pytest.approx([-0.5] * n, abs=0.1)

@@ -42,6 +42,7 @@ UNIQUE_FOR_A_REASON = {
     "(SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE clearance_m <= 0) BY drive_id, ego_id, object_id, t_ns": "no drive here has "
     "a contact, and pair has one row for each ego, object and step",
     "actor_state BY drive_id, actor_id, t_ns": "of two samples of an actor at one time one is left (drive/order.py: without_duplicates)",
+    "credible_sample BY drive_id, actor_id, t_ns": "state_dynamics has one row for each sample of an actor; no drive here has a doubt",
     "lane_crossing BY drive_id, ego_id, t_ns": "ego_state has one row, with one chain, for each step",
     "lost_time BY drive_id, t_from_ns": "it is grouped by them",
     "placed_step BY drive_id, ego_id, object_id, t_ns": "pair has one row for each ego, object and step",

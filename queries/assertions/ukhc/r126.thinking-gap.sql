@@ -12,8 +12,9 @@
 -- observes = "gap to the vehicle ahead"
 -- near_margin = 1.0
 -- merge_gap_s = 5.0
--- reads = ["following"]
+-- reads = ["following", "velocity_bound"]
 -- requires = ["way", "ego_size"]
+-- unaffected_by = ["velocity"]
 --
 -- [params.settle_s]
 -- default = 10.0
@@ -21,11 +22,21 @@
 -- why = "our default: time to restore the gap after one of the two changed into the lane, the same as in r126.two-second; a vehicle that was ahead already, or whose coming was not seen (at the log's begin, say), counts as settled"
 
 -- @applies
--- A vehicle that is not seen is at least free_m away: if that is enough, the rule does not apply.
-SELECT drive_id, ego_id, t_ns, object_id,
-    CASE WHEN follows IS NULL AND free_m >= thinking_distance_m(ego_speed_mps) THEN false ELSE follows AND (joined_ns IS NULL OR t_ns - joined_ns >= ($settle_s * 1e9)::BIGINT) END AS applies
-FROM following
+-- A vehicle that is not seen is at least free_m away: if that is enough, the rule does not apply. A velocity in doubt does not excuse.
+SELECT f.drive_id, f.ego_id, f.t_ns, f.object_id,
+    unless_in_doubt(
+        CASE WHEN f.follows IS NULL AND f.free_m >= thinking_distance_m(f.ego_speed_mps) THEN false ELSE f.follows AND (f.joined_ns IS NULL OR f.t_ns - f.joined_ns >= ($settle_s * 1e9)::BIGINT) END,
+        CASE WHEN b.t_ns IS NULL AND o.t_ns IS NULL THEN 0 ELSE 1 END
+    ) AS applies
+FROM following f
+LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.object_id = f.object_id
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, object_id, gap_m AS observed, thinking_distance_m(ego_speed_mps) AS required
-FROM following
+-- With a velocity in doubt, the rule can be kept, by the greatest speed that the ego can have, but not broken.
+SELECT f.drive_id, f.ego_id, f.t_ns, f.object_id, thinking_distance_m(f.ego_speed_mps) AS required,
+    CASE WHEN b.t_ns IS NULL AND o.t_ns IS NULL OR f.gap_m >= thinking_distance_m(CASE WHEN b.t_ns IS NULL THEN f.ego_speed_mps ELSE b.most_mps END) THEN f.gap_m END AS observed,
+    CASE WHEN (b.t_ns IS NOT NULL OR o.t_ns IS NOT NULL) AND (f.gap_m >= thinking_distance_m(CASE WHEN b.t_ns IS NULL THEN f.ego_speed_mps ELSE b.most_mps END)) IS NOT true THEN why('velocity_in_doubt', {'object_id': f.object_id}) END AS reason
+FROM following f
+LEFT JOIN velocity_bound b ON b.drive_id = f.drive_id AND b.ego_id = f.ego_id AND b.t_ns = f.t_ns AND b.object_id IS NULL
+LEFT JOIN velocity_bound o ON o.drive_id = f.drive_id AND o.ego_id = f.ego_id AND o.t_ns = f.t_ns AND o.object_id = f.object_id
