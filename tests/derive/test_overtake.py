@@ -518,7 +518,7 @@ def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("beside", ["parked", "cyclist", "horse"])
 def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
-    """A car at the opposing kerb, a cyclist or a horse that comes slowly is met first: it counts, and hides nobody behind it."""
+    """A cyclist or a horse that comes slowly is met first: it counts. A car parked at the opposing kerb does not. Neither hides anybody."""
     way, (ego, vbp, ov) = scene(hand)
     t = ego.t_s
     edge_d = way.other + np.sign(way.other) * 1.2
@@ -533,7 +533,9 @@ def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
         {row["profile"]: row for row in rows(derived(d, tables=["overtake_sda"]), "FROM overtake_sda")} for d in told
     ]
     for profile, row in sda[-1].items():
-        least, worst = min((each[profile]["spare_m"], each[profile]["ov_id"]) for each in sda[:-1])
+        alone = [each[profile] for each in sda[:-1]]
+        assert [each["ov_id"] for each in alone] == [None if beside == "parked" else "near", "ov", "fast"]
+        least, worst = min((each["spare_m"], each["ov_id"]) for each in alone if each["ov_id"] is not None)
         assert (row["spare_m"], row["ov_id"]) == (pytest.approx(least), worst)
     steps = [rows(derived(d, tables=["overtake_step"]), "FROM overtake_step ORDER BY t_ns") for d in told]
     for column in ("ov_in_ds_av_m", "av_in_ds_ov_m", "ds_overlap_m"):
