@@ -174,6 +174,7 @@ def test_it_is_audited_and_watched(name: str, absent: str, who: str, tmp_path: P
     assert "internal error" not in done.stdout + done.stderr
 
 
+@pytest.mark.ci
 def test_the_table_without_sizes_of_a_public_report(tmp_path: Path, command: Command) -> None:
     """One car at 108 km/h where 80 are allowed, and nobody knows how long it is: a result with a finding."""
     folder = shared("reported/no_sizes")

@@ -128,6 +128,7 @@ def test_listing_rules_loads_nothing_that_only_logs_need(tmp_path: Path) -> None
     assert not loaded & {"numpy", "pyarrow", "shapely", "mcap", "google", "lxml"}
 
 
+@pytest.mark.ci
 def test_a_check_loads_neither_pandas_nor_what_only_reports_need(tmp_path: Path) -> None:
     """DuckDB and pyarrow load pandas wherever it is installed: half a second."""
     assert find_spec("pandas") is not None

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 
+import pytest
 import typer
 
 from drivelint import cli
@@ -55,6 +56,7 @@ def test_the_help_of_check_has_every_option_once_under_its_heading() -> None:
     assert {"--fail-on", "--strict", "--require", "--baseline", "--waivers"} <= set(shown["Gate"])
 
 
+@pytest.mark.ci
 def test_a_shell_completes_commands_options_and_rules() -> None:
     assert "check" in completed("drivelint", "ch")
     assert completed("drivelint", "check", "--req") == ["--require"]

@@ -83,6 +83,7 @@ def test_a_drive_is_judged_in_the_conditions_given(tmp_path: Path) -> None:
     assert verdict("nation=gb-eng", "weather=wet", "engaged=no") == ("not_applicable", "not_engaged")
 
 
+@pytest.mark.ci
 def test_the_result_says_in_which_conditions(tmp_path: Path) -> None:
     from drivelint.report import summary
 

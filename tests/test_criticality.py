@@ -143,6 +143,7 @@ def test_commonroad(name: str) -> None:
     assert wrong == {}
 
 
+@pytest.mark.ci
 def test_modified_ttc_is_what_a_simulation_finds() -> None:
     """Random pairs at constant accelerations; a braking lead stands in the end (steps of 1 ms, so to 2 ms)."""
     draw = np.random.default_rng(4)

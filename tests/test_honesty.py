@@ -445,6 +445,7 @@ def test_a_short_sensor_range_cannot_tell_that_nobody_is_coming(judged: Judged, 
         assert row["verdict"] == "unknown"
 
 
+@pytest.mark.ci
 def test_a_log_without_indicators_is_named_and_counted() -> None:
     """Of a pack; a rule that somebody asks for by its name is unknown."""
     rows = scenes.judged([whole_run(run) for run in RUNS], rules=["ukhc"])

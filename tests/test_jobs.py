@@ -123,6 +123,7 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     assert len(second.notes) == len(drives)
 
 
+@pytest.mark.ci
 def test_an_interrupted_check_of_several_processes_says_so(asked: CheckOptions) -> None:
     interruption = Interruption()
     interruption.requested = True

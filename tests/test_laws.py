@@ -355,6 +355,7 @@ def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:
         as_at_home(found[f"{no}"], found[move.hand], move.t_s)
 
 
+@pytest.mark.ci
 def test_reasons_tell_seconds_of_the_drive_whatever_the_logs_clock() -> None:
     drives = [Elsewhere("rht").drive("now"), Elsewhere("rht", t_s=1_700_000_000).drive("then")]
     found = of_each(judged(drives, rules=RULES, profiles=PROFILES))

@@ -200,6 +200,7 @@ def mapping(tmp_path: Path, text: str = drives.MAPPING) -> str:
     return str(path)
 
 
+@pytest.mark.ci
 def test_the_whole_logs_show_the_collision(tmp_path: Path) -> None:
     found = verdicts(tmp_path, {"csv": drives.csv}, mapping=mapping(tmp_path))
     found |= verdicts(tmp_path, {"osi-mcap": drives.osi_mcap, "foxglove": drives.foxglove})

@@ -268,6 +268,7 @@ def test_results_that_do_not_fit_are_read_with_more(monkeypatch: pytest.MonkeyPa
     assert len(notes.said) == 1
 
 
+@pytest.mark.ci
 def test_the_memory_limit_is_really_lifted() -> None:
     """What the setting says is not enough: a table that did not fit has to fit in a database that is locked already."""
     large = "CREATE OR REPLACE TEMP TABLE large AS SELECT list(i) AS all FROM range(20_000_000) r(i)"

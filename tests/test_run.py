@@ -162,6 +162,7 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
             assert n == 0, table
 
 
+@pytest.mark.ci
 def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
     broken = tmp_path / "broken.csv"
     broken.write_text("<html>404</html>\n", encoding="utf-8")
@@ -343,6 +344,7 @@ def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told:
     assert not drive["lossy"]
 
 
+@pytest.mark.ci
 def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
     result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, 4.5)), Silent())
     rows = {row["rule_id"]: row for row in result.verdicts.to_pylist()}

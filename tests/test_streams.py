@@ -52,6 +52,7 @@ def test_words_that_steer_a_terminal_are_shown() -> None:
     assert terminal_safe("Straße 1 \u2192 2 \u00b7 3") == "Straße 1 \u2192 2 \u00b7 3"
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(os.name != "posix", reason="files cannot have such names")
 def test_a_hostile_file_name_and_id_is_text_on_the_terminal(tmp_path: Path) -> None:
     text = (ROOT / "fixtures" / "overtake" / "collision.csv").read_text(encoding="utf-8")

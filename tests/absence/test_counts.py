@@ -102,6 +102,7 @@ def test_a_message_is_missing(tmp_path: Path, write: Callable[[Path], bytes], cr
     )
 
 
+@pytest.mark.ci
 def test_an_index_that_contradicts_itself_is_no_witness(tmp_path: Path) -> None:
     """With a wrong CRC: it is its own count that was changed."""
     path = tmp_path / "log.mcap"
@@ -114,6 +115,7 @@ def test_an_index_that_contradicts_itself_is_no_witness(tmp_path: Path) -> None:
     assert checked(path)[0] == 3
 
 
+@pytest.mark.ci
 def test_a_topic_that_is_not_read_is_no_matter(tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     data = unchunked(path, drives.ros(path, drives.drive()), camera=True)
@@ -138,6 +140,7 @@ def test_all_messages_of_the_topic_that_is_not_here_are_missing(tmp_path: Path) 
     assert f"counts 3 messages of topic '{CAMERA}', the file has 0" in found["index_mismatch"]
 
 
+@pytest.mark.ci
 def test_the_index_of_a_chunk_names_a_message_that_is_not_in_it(tmp_path: Path) -> None:
     """The chunk was packed anew without it, with a CRC that is right, and so was the count of all."""
     path = tmp_path / "log.mcap"

@@ -232,6 +232,7 @@ def near_miss(folder: Path, is_gone: Callable[[int], bool]) -> Path:
     return osi_log.write(folder / "near-miss.mcap", osi_log.truths(truths))
 
 
+@pytest.mark.ci
 def test_a_frame_far_from_all_others_is_no_part_of_the_drive(tmp_path: Path) -> None:
     """The first message may hold the road alone, with a time of zero, where the others count from 1970."""
     truths = drives.osi_with_host(drives.drive(), range(0), None)

@@ -325,6 +325,7 @@ def test_a_drive_with_too_many_boxes_shows_every_nth_step(
     assert said["boxes"].startswith("every ")
 
 
+@pytest.mark.ci
 def test_without_a_map_there_are_boxes_and_verdicts(tmp_path: Path) -> None:
     path = the(run(tmp_path, CASE / "safe.csv", map=None), "safe")
     assert not messages(path, "map")

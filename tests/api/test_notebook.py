@@ -91,6 +91,7 @@ def test_an_error_stops_a_cell_and_not_the_kernel(folder: Path) -> None:
     assert streams(second) == {"stdout": "still there\n"}
 
 
+@pytest.mark.ci
 def test_an_error_is_a_line_and_its_traceback_is_there(folder: Path) -> None:
     shown, again = run(folder, "import drivelint\ndrivelint.check('nowhere.mcap')", "%tb", allow_errors=True)
     (error,) = (each for each in shown if each["output_type"] == "error")

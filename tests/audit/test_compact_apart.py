@@ -50,6 +50,7 @@ def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.Mo
     assert not any(here), f"process {os.getpid()} packed while it judged"
 
 
+@pytest.mark.ci
 def test_its_errors_keep_their_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drives = fleet.write(tmp_path / "fleet", 12)
     monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)

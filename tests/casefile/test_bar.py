@@ -8,6 +8,8 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
+import pytest
+
 from drivelint.casefile import commands as workshop
 from tests.shared_data import ROOT
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+@pytest.mark.ci
 def test_the_bar_is_for_a_terminal_only(tmp_path: Path) -> None:
     workshop.new_rule("mine.one", tmp_path, "invariant")
     command = [sys.executable, "-m", "drivelint", "rules", "test", str(tmp_path), "--mutate"]

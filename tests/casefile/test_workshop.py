@@ -216,6 +216,7 @@ def test_a_case_that_fails_is_said_with_its_line(tmp_path: Path, cases: str, lin
     assert f"{rule.path.with_suffix('.cases.yml')}:{line}: {message}" in said
 
 
+@pytest.mark.ci
 def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_applies(tmp_path: Path) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, object_id, speed_mps AS observed, $limit AS required FROM follower"
     case = "\n- name: clean\n  given: {follower: {t_s: 0..1 by 0.1, lane: own, object_id: f, speed_mps: 14}}\n  expect: pass\n"

@@ -285,6 +285,7 @@ def test_records_that_do_not_fit(tmp_path: Path, name: str, content: dict[str, s
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.ci
 @given(st.sets(st.one_of(st.integers(0, 1 << 65).map(str), st.text()), min_size=1).map(sorted))
 def test_every_actor_has_a_number_of_its_own(actors: list[str]) -> None:
     numbers = assign_osi_ids(actors)

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
+import pytest
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -32,6 +34,7 @@ for n in range(int(sys.argv[1])):
 """
 
 
+@pytest.mark.ci
 def test_a_mapping_is_loaded_for_the_first_time_by_several_threads(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, str(ROUNDS)], capture_output=True, text=True, check=False, cwd=tmp_path

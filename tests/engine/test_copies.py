@@ -39,6 +39,7 @@ def offsets(drive: Drive, errors: MeasurementErrors, numbers: range) -> dict[str
     return found
 
 
+@pytest.mark.ci
 def test_positions_and_the_map_are_off_by_as_much_as_was_asked(drive: Drive) -> None:
     own = offsets(drive, MeasurementErrors(0.3, 0.0, 0.0), range(1, N + 1))
     for moved in own.values():

@@ -118,6 +118,7 @@ def test_no_copy_stays_in_the_database(judged: tuple[Path, list[Row]]) -> None:
         assert kept[0] == len(judged[1])
 
 
+@pytest.mark.ci
 def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
     rows = checked(logs, ("collision",), robustness=False)
     assert rows

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
+
 from drivelint import catalogue
 from drivelint.engine.session import JudgingSession
 from drivelint.sql import store
 from tests.scenes import drive, moving, road, times
 
 
+@pytest.mark.ci
 def test_a_map_that_an_earlier_session_left_is_not_there_twice() -> None:
     way, t = road(), times(3.0)
     scene = drive([moving("ego", way, t, 100 + 10 * t, way.own)], way.environment)

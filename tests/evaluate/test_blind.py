@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import pytest
+
 from tests.evaluate.packs import EXECUTION, HOLDS, INVARIANT, brief, verdicts, write
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ def test_one_row_for_all_of_them_beside_what_was_judged(tmp_path: Path) -> None:
     assert rows[1]["reason"] == "the log has a hole between 2.000 s and 4.000 s, and in 1 more such stretches"
 
 
+@pytest.mark.ci
 def test_a_stretch_without_place_or_heading_or_indicator(tmp_path: Path) -> None:
     for column, code in (("x_m", "ego_not_placed"), ("y_m", "ego_not_placed"), ("yaw_rad", "ego_not_placed"),
                          ("indicator", "indicator_unknown")):  # fmt: skip

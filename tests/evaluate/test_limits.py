@@ -61,6 +61,7 @@ def reasons(verdicts: pa.Table) -> dict[tuple[str, str], tuple[str, str, str]]:
     }
 
 
+@pytest.mark.ci
 def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_path: Path) -> None:
     names = ("cross_join", "rows", "long_code", "long_reason")
     found = check(options(write_pack(tmp_path / "bad", names[:3]), "safe", seconds=1.0), Silent()).verdicts

@@ -129,6 +129,7 @@ def test_a_contact_has_the_speed_before_it(tmp_path: Path) -> None:
     assert 0.9 * sum(speeds) < row["closing_mps"] <= sum(speeds)
 
 
+@pytest.mark.ci
 def test_a_contact_that_only_the_speeds_tell_has_the_speed_before_it() -> None:
     """No box overlaps in this log. Both vehicles have lost their speeds at the first failing step; the ones before it are in the log."""
     log = shared("overtake_case_study/collision.csv")

@@ -162,6 +162,7 @@ def test_the_engine_and_a_naive_evaluator_agree(
         assert runs.get(ego, []) == naive.stretches(steps, 300), steps
 
 
+@pytest.mark.ci
 @settings(max_examples=3, deadline=None, derandomize=True, phases=PHASES)
 @given(subjects=st.lists(SUBJECT, min_size=15, max_size=25))
 def test_asking_for_margins_changes_no_verdict(

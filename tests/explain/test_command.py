@@ -32,6 +32,7 @@ def ran(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], *arg
     return left.value.code, out, err
 
 
+@pytest.mark.ci
 def test_text_is_for_people(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     code, out, err = ran(
         monkeypatch, capfd, "no-collision@safe", "--in", str(folder), "--samples", "4", "--sigma-map", "0.2"

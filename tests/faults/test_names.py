@@ -26,6 +26,7 @@ FORMATS: Final = ("html", "junit", "sarif", "xqar", "markdown")
 TOPIC = "/<b>'; DROP TABLE actor; --"
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(os.name != "posix", reason="files cannot have such names")
 def test_exactly_that_file(tmp_path: Path) -> None:
     """Beside them lies a file that globs of their names would find, without anybody in it but the ego."""
@@ -36,6 +37,7 @@ def test_exactly_that_file(tmp_path: Path) -> None:
     assert result.verdicts.arrow()["object_id"].to_pylist() == ["1", "2"] * len(NAMES)
 
 
+@pytest.mark.ci
 def test_words_of_a_log_are_text_everywhere(tmp_path: Path) -> None:
     """Two of its cars drive into each other, so that every report has something to say of them."""
     messages = [

@@ -74,6 +74,7 @@ def test_a_result_that_is_not_of_one_run(
         assert caught.value.exit_code is ExitCode.USAGE
 
 
+@pytest.mark.ci
 def test_a_map_that_is_another_now(tmp_path: Path) -> None:
     road = tmp_path / "road.xodr"
     shutil.copy(OVERTAKE / "road.xodr", road)

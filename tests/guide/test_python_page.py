@@ -49,6 +49,7 @@ def test_the_gap_around_a_moment_is_that_of_the_finding_at_it(ran: dict[str, Any
     assert Path("room.png").stat().st_size > 5000
 
 
+@pytest.mark.ci
 def test_the_headway_of_each_drive_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     headways = run(code_of_the_page("headway.py"), tmp_path, monkeypatch)["headways"]
     assert set(headways["file_name"]) == {file.name for file in Path("demo").glob("*.mcap")}
@@ -56,6 +57,7 @@ def test_the_headway_of_each_drive_is_drawn(tmp_path: Path, monkeypatch: pytest.
     assert Path("headway.png").stat().st_size > 5000
 
 
+@pytest.mark.ci
 def test_the_gap_is_below_0_side_by_side_without_a_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As the page says, of the demo's near miss at 25 mph."""
     code = code_of_the_page()

@@ -20,6 +20,7 @@ RULE = ("--map", OVERTAKE / "road.xodr", "--mapping", OVERTAKE / "mapping.toml",
 LOG = (OVERTAKE / "collision.csv").read_bytes()
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(sys.platform != "linux", reason="file names are text here")
 def test_a_file_name_that_is_no_text(tmp_path: Path) -> None:
     bad = Path(os.fsdecode(bytes(tmp_path) + b"/bad\xff.csv"))

@@ -130,6 +130,7 @@ def messages(path: Path) -> list[tuple[str, str, bytes]]:
         ]
 
 
+@pytest.mark.ci
 def test_an_annotated_log_is_read_by_others(nasty: Nasty, tmp_path: Path) -> None:
     (log,) = (nasty.result / "annotated").glob("*.mcap")
     found = [json.loads(data.decode()) for topic, encoding, data in messages(log) if encoding == "json"]

@@ -13,6 +13,7 @@ from drivelint.incident import IncidentRequest, judge_parties_again
 from drivelint.incident.motion import MotionOfParties
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("has_map", [True, False])
 def test_offsets_from_the_lane(tmp_path: Path, has_map: bool) -> None:
     drivelint.write_demo(tmp_path / "demo")

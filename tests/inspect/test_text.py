@@ -60,6 +60,7 @@ def test_nothing_is_cut_off(width: int) -> None:
         assert said in lacking
 
 
+@pytest.mark.ci
 def test_drafts_are_counted_apart_from_what_check_runs() -> None:
     n_run = len(select_rules(load_rules(), (), ()))
     n_all = len(select_rules(load_rules(), ("ukhc",), ()))
@@ -73,6 +74,7 @@ def test_drafts_are_counted_apart_from_what_check_runs() -> None:
     assert "can decide 1 of 1 rules (ukhc.r163.cut-in)" in named, "check runs a draft that is named"
 
 
+@pytest.mark.ci
 def test_plain_where_it_is_no_terminal() -> None:
     done = run("inspect", LOG, "--mapping", str(ON_ROAD["mapping"]))
     assert (done.returncode, done.stderr) == (0, "")
@@ -81,6 +83,7 @@ def test_plain_where_it_is_no_terminal() -> None:
     assert "name a map with --map" in done.stdout
 
 
+@pytest.mark.ci
 def test_json_for_machines() -> None:
     done = run("inspect", LOG, "--mapping", str(ON_ROAD["mapping"]), "--map", str(ON_ROAD["map"]), "--format", "json")
     found = json.loads(done.stdout)

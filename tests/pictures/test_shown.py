@@ -91,6 +91,7 @@ def test_inspect_says_that_a_camera_is_read_as_pictures(bag: Path) -> None:
     assert (read[FRONT], read[LEFT]) == ("pictures", "pictures")
 
 
+@pytest.mark.ci
 def test_without_pictures_the_page_is_that_of_a_log_without_cameras(bag: Path, out: Path, tmp_path: Path) -> None:
     plain = judged(bag, tmp_path / "plain", pictures=False)
     assert not (plain / "pictures.parquet").exists()
@@ -101,6 +102,7 @@ def test_without_pictures_the_page_is_that_of_a_log_without_cameras(bag: Path, o
     assert result.findings.equals(load_result(plain).findings)
 
 
+@pytest.mark.ci
 def test_a_log_without_cameras_leaves_nothing_and_imports_no_pillow(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "bag", cameras=False)
     code = (
@@ -115,6 +117,7 @@ def test_a_log_without_cameras_leaves_nothing_and_imports_no_pillow(tmp_path: Pa
     assert "pictures.parquet" not in files
 
 
+@pytest.mark.ci
 def test_a_damaged_frame_is_told_and_the_others_are_shown(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "bag", damaged={42})
     result = load_result(judged(bag, tmp_path / "out"))

@@ -59,6 +59,7 @@ def lacking(found: Drive) -> dict[str, set[str]]:
     return {rule.rule_id: set(rule.missing_signals) for rule in ego.cannot if rule.rule_id not in found.drafts}
 
 
+@pytest.mark.ci
 def test_what_can_be_decided(tmp_path: Path, scene: drive.Scene, whole: list[ros.Message]) -> None:
     """What is lacking is in no bag of Autoware: headlights, the horn, the kind of vehicle, the light of day; and footways in this map."""
     found = inspected(tmp_path, scene, whole)

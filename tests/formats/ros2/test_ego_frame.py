@@ -187,6 +187,7 @@ def test_the_choice_of_a_static_topic_leaves_no_other_topic_out(tmp_path: Path) 
     assert found["x_m"] == pytest.approx(track(seen(tmp_path, messages, topic="/tf"))["x_m"])
 
 
+@pytest.mark.ci
 def test_many_child_frames_do_not_take_long(tmp_path: Path) -> None:
     """With a pass over all transforms for each child frame, this would take many times longer."""
     topic, kind, t_s, content = ros.transform(T0, "map", "marker")
