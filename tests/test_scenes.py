@@ -14,7 +14,7 @@ import pytest
 
 from drivelint import catalogue
 from drivelint.scene import document
-from drivelint.scene.judge import differences, gating_rules, judge_scenes, rules_to_judge_by
+from drivelint.scene.judge import differences, gating_rules, judge_scenes, rule_selectors_for_scenes
 from drivelint.scene.scene import Scene, scenes_of
 from tests.drawn import SCENES, TOPICS
 
@@ -41,7 +41,7 @@ def test_the_first_scene_of_each_topic_has_the_verdicts_that_it_expects(tmp_path
 def differing(scenes: Sequence[Scene], folder: Path, *, all_fails: bool) -> dict[str, list[str]]:
     """Return scene -> how its verdicts differ."""
     verdicts = judge_scenes(
-        scenes, rules_to_judge_by([scene.text for scene in scenes], all_fails=all_fails), folder / "scenes"
+        scenes, rule_selectors_for_scenes([scene.text for scene in scenes], all_fails=all_fails), folder / "scenes"
     )
     gating = gating_rules(catalogue.load_rules()) if all_fails else frozenset[str]()
     return {scene.name: lines for scene in scenes if (lines := list(differences(scene, verdicts, gating)))}

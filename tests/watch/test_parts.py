@@ -17,7 +17,7 @@ from drivelint.errors import UsageError
 from drivelint.run import CheckOptions
 from drivelint.watch import triggers
 from drivelint.watch.halting import ChildProgram
-from drivelint.watch.interruption import WatchInterruption
+from drivelint.watch.interruption import InterruptionOfWatchOrCheck
 from drivelint.watch.judge import JudgedWindow
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.shrinking import ShrinkingMargins
@@ -184,7 +184,7 @@ def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:
 
 
 def test_what_goes_on_when_it_is_first_asked_for_is_interrupted_alone() -> None:
-    watched, checked = WatchInterruption(), WatchInterruption()
+    watched, checked = InterruptionOfWatchOrCheck(), InterruptionOfWatchOrCheck()
     watched.request()
     for each in (watched, checked):
         each.switch_to_check()

@@ -168,13 +168,13 @@ def download(bucket_object: BucketObject, folder: Path) -> Path:
     copy = folder / (path.rpartition("/")[2] or "object")
     options: Any = {"if_match": bucket_object.e_tag} if bucket_object.e_tag else {}
 
-    def write_copy() -> None:
+    def download_to_copy() -> None:
         with copy.open("wb") as file:
             for part in obstore.get(client, path, options=options).stream():
                 file.write(part)
 
     try:
-        _run_with_retries(write_copy)
+        _run_with_retries(download_to_copy)
     except FileNotFoundError:
         raise TraceError(f"{bucket_object.url}: no such object: check the URL") from None
     except exceptions.PreconditionError:

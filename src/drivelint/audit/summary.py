@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 MOST_LISTED_RULES: Final = 5
 MOST_LISTED_REASONS: Final = 3
-MOST_LISTED_COPIES: Final = 3
+MOST_LISTED_REPEATED_LOGS: Final = 3
 MOST_LISTED_LOGS: Final = 3
 _KEY_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields that have another name in `summary.json`."""
@@ -233,5 +233,5 @@ def summary_of_all_drives(con: duckdb.DuckDBPyConnection, n_reused: int) -> Audi
         n_unknown_for=unknown_for.num_rows,
         lossy_logs=logs_with_flag(con, "lossy").logs,
         off_map_logs=logs_with_flag(con, "off_map").logs,
-        copied=con.execute(statement("audit/copied"), {"most": MOST_LISTED_COPIES}).to_arrow_table().to_pylist(),
+        copied=con.execute(statement("audit/copied"), {"most": MOST_LISTED_REPEATED_LOGS}).to_arrow_table().to_pylist(),
     )

@@ -278,7 +278,7 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     return found
 
 
-def merged_cases_difference(
+def first_unexpected_merged_case(
     cases: Sequence[Case], numbered: Sequence[merged_cases.NumberedCase], outcome: merged_cases.CaseOutcome
 ) -> tuple[Case, str] | None:
     """Return the first merged case whose outcome differs from what the case expects, and the difference; None if all agree."""
@@ -302,7 +302,7 @@ def run_merged_cases(
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
                     codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
-            if wrong := merged_cases_difference(cases, group, outcome):
+            if wrong := first_unexpected_merged_case(cases, group, outcome):
                 case, message = wrong
                 return f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?", codes
     return "", codes

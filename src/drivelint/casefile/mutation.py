@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
-from drivelint.casefile import case_location, merged_cases_difference, numbered_cases, read_cases
+from drivelint.casefile import case_location, first_unexpected_merged_case, numbered_cases, read_cases
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge_cases, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
@@ -66,14 +66,14 @@ class MutationResult(NamedTuple):
         return not (self.problem or self.stale or (self.stable and self.unlisted))
 
 
-class _Survivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _ListedSurvivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rule: str
     mutant: str
     reason: str
 
 
 class _SurvivorsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    survivor: list[_Survivor] = []
+    survivor: list[_ListedSurvivor] = []
 
 
 def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResult]:
@@ -140,11 +140,13 @@ def _surviving_mutants(rule: Rule, candidates: list[Mutant]) -> list[Mutant]:
     for key, where in MERGE_KEYS.items():
         for group in mergeable_groups(everybody, key):
             outcomes = judge([rule, *(mutant.rule for mutant in candidates)], merge_cases(group, key), group[0].params)
-            if wrong := merged_cases_difference(cases, group, outcomes[rule.id]):
+            if wrong := first_unexpected_merged_case(cases, group, outcomes[rule.id]):
                 place = case_location(rule, wrong[0])
                 raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
             candidates = [
-                mutant for mutant in candidates if not merged_cases_difference(cases, group, outcomes[mutant.rule.id])
+                mutant
+                for mutant in candidates
+                if not first_unexpected_merged_case(cases, group, outcomes[mutant.rule.id])
             ]
     return candidates
 
@@ -159,7 +161,7 @@ def unknown_rule_messages(rules: Sequence[Rule]) -> list[str]:
     ]
 
 
-def _read_survivors(file: Path) -> list[_Survivor]:
+def _read_survivors(file: Path) -> list[_ListedSurvivor]:
     if not file.is_file():
         return []
     try:

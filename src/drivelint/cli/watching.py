@@ -19,7 +19,7 @@ from drivelint.temporary import temporary_folder
 
 if TYPE_CHECKING:
     from drivelint.report.progress import Progress
-    from drivelint.watch.interruption import WatchInterruption
+    from drivelint.watch.interruption import InterruptionOfWatchOrCheck
     from drivelint.watch.messages import Message
     from drivelint.watch.options import WatchOptions
 
@@ -138,7 +138,7 @@ def watch(
     from drivelint.errors import DriveLintError, ExitCode
     from drivelint.report.outputs import working_folder
     from drivelint.watch import messages
-    from drivelint.watch.interruption import WatchInterruption
+    from drivelint.watch.interruption import InterruptionOfWatchOrCheck
     from drivelint.watch.options import WatchOptions
 
     settings = WatchOptions(
@@ -166,7 +166,7 @@ def watch(
         serve=serve,
         allow_origin=tuple(allow_origin or ()),
     )
-    emit, interruption = _Printer(), WatchInterruption()
+    emit, interruption = _Printer(), InterruptionOfWatchOrCheck()
     with say_earlier_folder_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         try:
             code = run_interruptible(
@@ -203,7 +203,7 @@ def _watch_and_check(
     settings: WatchOptions,
     work: Path | None,
     emit: _Printer,
-    interruption: WatchInterruption,
+    interruption: InterruptionOfWatchOrCheck,
     progress: Progress,
     *,
     overwrite: bool,

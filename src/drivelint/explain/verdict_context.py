@@ -65,7 +65,7 @@ class VerdictContext:
             for rows in (judgement.verdicts, judgement.steps)
         )
         return [
-            _verdict_on_target(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, []))
+            _verdict_word_on_target(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, []))
             for drive in drives
         ]
 
@@ -112,7 +112,7 @@ def _has_same_margin(context: VerdictContext, series: list[Step]) -> bool:
     return any(abs(margin - row["margin"]) < 1e-6 for margin in here)
 
 
-def _verdict_on_target(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
+def _verdict_word_on_target(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
     span = target.judged_span_ns
     if any(row["verdict"] == "error" for row in verdicts):
         return "error"

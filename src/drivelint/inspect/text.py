@@ -31,7 +31,7 @@ _MAX_LISTED_NAMES: Final = 6
 """Largest number of egos or selectors that a line names; it then states how many more there are."""
 _DRAFT_MARK: Final = " (draft)"
 _STYLE_BY_SEVERITY: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
-_READER_NOTE_PREFIX: Final = "read through"
+_HIDDEN_NOTE_PREFIX: Final = "read through"
 """Reader notes that begin with these words repeat the content section, so they are not shown."""
 _HANDEDNESS_SOURCE_WORDS: Final = {
     "option": "as --handedness says",
@@ -118,7 +118,7 @@ def _content_lines(content: model.Content) -> Iterator[Line]:
     for sheet in content.sheets if len(content.sheets) == 1 else ():
         yield "table", _sheet_text(sheet)
     for note in content.notes:
-        if not note.startswith(_READER_NOTE_PREFIX):
+        if not note.startswith(_HIDDEN_NOTE_PREFIX):
             yield "note", Text(note)
 
 

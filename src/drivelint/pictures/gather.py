@@ -104,12 +104,12 @@ def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
         elif topics := camera_topics(files):
             return DriveCameras(trace.path, lambda: McapFrameSource(files), clock, topics)
     elif format_ == D123_FORMAT:
-        from drivelint.formats.d123.reader import log_clock
+        from drivelint.formats.d123.reader import log_time_converter
         from drivelint.pictures.d123_log import D123FrameSource, camera_names
 
         if not (topics := camera_names(trace.path)):
             return None
-        zero_ns = log_clock(trace.path).zero_us * 1000
+        zero_ns = log_time_converter(trace.path).zero_us * 1000
         times = FrameTimes(np.array([0]), np.array([zero_ns], np.uint64))
         return DriveCameras(trace.path, lambda: D123FrameSource(trace.path), DriveClock(times), topics)
     return None

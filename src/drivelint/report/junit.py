@@ -62,7 +62,7 @@ def render(result: Result) -> bytes:
     cases = _cases_by_drive(result)
     totals = dict.fromkeys(("tests", "failures", "errors"), 0)
     suites = [
-        (drive["drive_id"], [*_cases_of_drive(drive), *cases.get(drive["drive_id"], ())])
+        (drive["drive_id"], [*_cases_of_drive_problems(drive), *cases.get(drive["drive_id"], ())])
         for drive in result.drives.to_pylist()
     ]
     if too_little := why_too_little_decided(result):
@@ -77,7 +77,7 @@ def render(result: Result) -> bytes:
     return xml_bytes(root)
 
 
-def _cases_of_drive(drive: Row) -> Iterator[Case]:
+def _cases_of_drive_problems(drive: Row) -> Iterator[Case]:
     """Yield test cases for the problems of a drive as a whole."""
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])

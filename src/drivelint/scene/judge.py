@@ -172,7 +172,9 @@ def scene_test(
         if out is not None:
             _write_log(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judge_scenes(scenes, rules_to_judge_by(texts, all_fails=file.all_fails), Path(folder), rules_dirs)
+        verdicts = judge_scenes(
+            scenes, rule_selectors_for_scenes(texts, all_fails=file.all_fails), Path(folder), rules_dirs
+        )
     gating = gating_rules(rules) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
@@ -183,7 +185,7 @@ def scene_test(
     return code
 
 
-def rules_to_judge_by(texts: Sequence[SceneEntry], *, all_fails: bool) -> list[str]:
+def rule_selectors_for_scenes(texts: Sequence[SceneEntry], *, all_fails: bool) -> list[str]:
     """Return the rules by which scenes are judged: the rules that they name, and with `all_fails` all stable rules."""
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 

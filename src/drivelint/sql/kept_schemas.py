@@ -22,7 +22,7 @@ def cached_schemas(
     """Return table -> Arrow schema without the geometry column, for tables that `create_tables` creates."""
     import pyarrow as pa
 
-    def serialized_schemas() -> dict[str, bytes]:
+    def compute_serialized_schemas() -> dict[str, bytes]:
         with duckdb.connect() as con:
             create_tables(con)
             empty = {name: f"SELECT COLUMNS(lambda c: c <> 'geom') FROM {name} LIMIT 0" for name in tables}
@@ -32,5 +32,5 @@ def cached_schemas(
 
     return {
         name: pa.ipc.read_schema(pa.py_buffer(content))
-        for name, content in _SERIALIZED_SCHEMAS.find_or_compute("", serialized_schemas).items()
+        for name, content in _SERIALIZED_SCHEMAS.find_or_compute("", compute_serialized_schemas).items()
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from drivelint.engine.interruption import Interruption
 
 
-class WatchInterruption:
+class InterruptionOfWatchOrCheck:
     """Interrupts only one of two successive parts, the watch and the check: the part that runs at the first request."""
 
     def __init__(self) -> None:

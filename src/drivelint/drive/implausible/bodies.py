@@ -63,8 +63,8 @@ class _Boxes(NamedTuple):
     velocity: Floats
 
 
-LEAST_BEGIN_OVERLAP_M: Final = 0.3
-BEGIN_LEAST_MPS: Final = 2.0
+LEAST_OVERLAP_AT_TRACK_BEGIN_M: Final = 0.3
+LEAST_SPEED_AT_TRACK_BEGIN_MPS: Final = 2.0
 """If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
 doubtful."""
 LATERAL_NOISE_M: Final = 0.3
@@ -167,7 +167,7 @@ def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
         mine = _boxes_of_rows(states, half, np.full(len(other_rows), last))
         depth = _overlaps_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
-        if (depth > LEAST_BEGIN_OVERLAP_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
+        if (depth > LEAST_OVERLAP_AT_TRACK_BEGIN_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_POSITION_NS
     text = (
         "tracks end with a standstill at a position from which another vehicle drives on at once, in {n} of {of} "
@@ -196,7 +196,7 @@ def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int,
         near = (
             _overlap_deeply(mine, theirs)
             | coupled
-            | (_overlaps_m(mine, theirs)[0] >= LEAST_BEGIN_OVERLAP_M).all(axis=0)
+            | (_overlaps_m(mine, theirs)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(axis=0)
         )
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
@@ -280,7 +280,14 @@ def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     across, depth = _overlaps_m(first, second)[0][1], _overlaps_m(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
-    if not (together.any() and depth[0] >= LEAST_BEGIN_OVERLAP_M and speeds[0] >= BEGIN_LEAST_MPS) or together.all():
+    if (
+        not (
+            together.any()
+            and depth[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M
+            and speeds[0] >= LEAST_SPEED_AT_TRACK_BEGIN_MPS
+        )
+        or together.all()
+    ):
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > IMPACT_SPEED_CHANGE_MPS for boxes in (first, second)]

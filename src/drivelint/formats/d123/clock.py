@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _LATEST_US: Final = 1 << 52  # the year 2112: a clock beyond it is broken
 
 
-class Clock(NamedTuple):
+class LogTimeConverter(NamedTuple):
     """Converts a log's microseconds to nanoseconds of the drive, which count from `zero_us`."""
 
     zero_us: int = 0
@@ -38,7 +38,7 @@ class Clock(NamedTuple):
         return [f"times count from {self.zero_us} us of the log: the data set does not document whether this is UTC"]
 
 
-def clock_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc: bool) -> Clock:
+def converter_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc: bool) -> LogTimeConverter:
     """Return the clock of a log with these columns of times. Errors: `TraceError` for impossible times.
 
     drivelint treats times as large as those of UTC as UTC. Large times of another clock therefore count from the first time of the log.
@@ -49,4 +49,4 @@ def clock_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc: boo
         raise TraceError(
             f"{folder}: times from {low} to {high} us: the clock or its unit is wrong: convert the log again"
         )
-    return Clock(0 if utc or high * 1000 < EARLIEST_UTC_NS else low)
+    return LogTimeConverter(0 if utc or high * 1000 < EARLIEST_UTC_NS else low)

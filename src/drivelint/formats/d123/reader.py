@@ -28,7 +28,7 @@ from drivelint.formats.d123.arrow_files import (
     read_modality,
     sync_table,
 )
-from drivelint.formats.d123.clock import clock_from_times
+from drivelint.formats.d123.clock import converter_from_times
 from drivelint.formats.d123.lights import light_states, read_lights
 from drivelint.formats.d123.map_file import find_map
 from drivelint.formats.folders import folder_kind
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Indices, Mask, Times
     from drivelint.formats.d123.arrow_files import LogInfo, ModalityFile
-    from drivelint.formats.d123.clock import Clock
+    from drivelint.formats.d123.clock import LogTimeConverter
     from drivelint.formats.probe import Probe
 
 NAME: Final = "123d"
@@ -74,7 +74,7 @@ def read(probe: Probe) -> Recording:
     about = facts.dataset_facts(info.dataset)
     ego, boxes, lights = ego_file.read_ego(folder), box_file.read_boxes(folder), read_lights(folder)
     files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
-    time = clock_from_times(folder, [sync["timestamp_us"], *files], utc=about.utc)
+    time = converter_from_times(folder, [sync["timestamp_us"], *files], utc=about.utc)
     frames = _usable_frame_rows(folder, sync, ego, boxes)
     recording = Recording(
         NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_origin_note(info), *time.notes]
@@ -119,12 +119,12 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-def log_clock(folder: Path) -> Clock:
+def log_time_converter(folder: Path) -> LogTimeConverter:
     """Return the clock with which `read` reads a log. Errors: as `read`."""
     sync, info = sync_table(folder)
     files = [read_modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
     times = [file.columns["timestamp_us"] for file in files if file is not None]
-    return clock_from_times(folder, [sync["timestamp_us"], *times], utc=facts.dataset_facts(info.dataset).utc)
+    return converter_from_times(folder, [sync["timestamp_us"], *times], utc=facts.dataset_facts(info.dataset).utc)
 
 
 _NO_STATES: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))

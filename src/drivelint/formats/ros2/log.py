@@ -151,7 +151,7 @@ class Log:
             self.undefined_ego.add_undefined(channel, kind)
         return False
 
-    def refuse_unknown_topics(self) -> None:
+    def refuse_unread_topics(self) -> None:
         """Raise `TraceError` if a topic that the user chose is not read."""
         read_topics = {topic for topics in self.topics.values() for topic in topics}
         for topic in self.requested_topics:

@@ -75,7 +75,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     log = Log(path, requested_topics)
     log.read(bag.bag_files(path))
-    log.refuse_unknown_topics()
+    log.refuse_unread_topics()
     objects = log.select_topic(OBJECT_CONVERTERS, "road users")
     log.unread.refuse_kinds(path, OBJECT_CONVERTERS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}

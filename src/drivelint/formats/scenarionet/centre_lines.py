@@ -250,7 +250,7 @@ def _measure_to_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[
                     lane.bound_distances[at, side] = np.fmin(lane.bound_distances[at, side], far / 2.0)
 
 
-def fill_unknown_bound_distances(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
+def fill_unknown_bound_distances_with_shares(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
     """Fill in unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances filled in.
 
     At its ends, a lane is as wide as its predecessors or successors; in between, the width changes linearly. A side that is still unknown

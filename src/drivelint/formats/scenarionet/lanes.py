@@ -9,7 +9,7 @@ import shapely
 
 from drivelint.errors import MapError
 from drivelint.formats.scenarionet.centre_lines import (
-    fill_unknown_bound_distances,
+    fill_unknown_bound_distances_with_shares,
     measure_bound_distances,
     named_boundary_spans,
     read_centre_lines,
@@ -52,7 +52,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         measure_bound_distances(centres, scenario)
     except PickleError as error:
         raise MapError(f"map {source.name}: {error}") from error
-    assumed_shares = fill_unknown_bound_distances(centres)
+    assumed_shares = fill_unknown_bound_distances_with_shares(centres)
     lanes = build_lanes(_bounded_lanes(centres, scenario, quality), request.offset, quality)
     if not any(lane.drivable for lane in lanes):
         first = next((row["message"] for row in quality.rows), "it has none")

@@ -57,7 +57,7 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
         *sources.drop_differenced_velocities(tracks),
         *sources.drop_false_zero_last_velocities(tracks),
     ]
-    is_interpolated = sources.is_actor_interpolated(tracks, dataset)
+    is_interpolated = sources.actors_with_interpolated_positions(tracks, dataset)
     if is_interpolated.any():
         findings += sources.give_keyframe_velocities(tracks, is_interpolated, dataset.steps_per_keyframe)
     of_ego, notes = _correct_ego_track(tracks, scenario, is_interpolated)

@@ -88,7 +88,7 @@ def drop_false_zero_last_velocities(tracks: Tracks) -> list[QualityFinding]:
     return [QualityFinding.of_actors("velocity_unknown", "warning", message, ids)]
 
 
-def is_actor_interpolated(tracks: Tracks, dataset: DatasetFacts) -> Mask:
+def actors_with_interpolated_positions(tracks: Tracks, dataset: DatasetFacts) -> Mask:
     """Return for each actor (n,) whether its positions are interpolated between keyframes, that is, lie evenly on straight lines."""
     every = dataset.steps_per_keyframe
     if not every or len(tracks.t_s) < every + 1:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_REASONS: Final = 60
-_REASON_CODES_OF_MOMENT: Final = {"missing_step", "applies_unknown", "anchor_unknown", "reference_time_unknown"}
+_REASON_CODES_NO_INPUT_REMOVES: Final = {"missing_step", "applies_unknown", "anchor_unknown", "reference_time_unknown"}
 
 
 class VerdictReason(NamedTuple):
@@ -47,7 +47,7 @@ def summarise_reasons(reasons: Iterable[VerdictReason]) -> str:
 
 def can_be_provided(code: str) -> bool:
     """Return whether a log, a map or an option could provide the missing signal or condition."""
-    return code not in _REASON_CODES_OF_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
+    return code not in _REASON_CODES_NO_INPUT_REMOVES and (code.startswith("missing_") or code.endswith("_unknown"))
 
 
 def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[str, Any]]:
