@@ -14,7 +14,8 @@ from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, ti
 
 def over_line(way: Road, s: Any, places: list[tuple[float, float]]) -> Any:
     """Offsets along s, from the own lane's centre towards the oncoming lane by so many metres at each place."""
-    return way.own + way.over * np.interp(s, *zip(*places, strict=True))
+    stations, metres = zip(*places, strict=True)
+    return way.own + way.over * np.interp(s, stations, metres)
 
 
 def truck(way: Road, places: list[tuple[float, float]], start: float = 150.0) -> Actor:

@@ -21,8 +21,8 @@ RULES = ("criticality.ttc", "criticality.drac", "criticality.ttb")
 def doubted(told: Drive, actor: str, code: str = "common_jolt", span: tuple[float, float] = (1.45, 2.55)) -> Drive:
     """Return the drive with a doubt about an actor's velocity in this span."""
     table = told.trace.tables["doubt"]
-    row = {"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": code}
-    row |= {"t_from_ns": round(span[0] * 1e9), "t_to_ns": round(span[1] * 1e9)}
+    whom = {"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": code}
+    row = {**whom, "t_from_ns": round(span[0] * 1e9), "t_to_ns": round(span[1] * 1e9)}
     told.trace.tables["doubt"] = pa.concat_tables([table, pa.Table.from_pylist([row], schema=table.schema)])
     return told
 
