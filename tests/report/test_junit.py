@@ -73,7 +73,7 @@ def test_a_case_gathers_its_verdict_rows_by_the_worst(said: list[str], strict: b
     assert list(outcomes(run).values()) == [shown]
 
 
-VERDICTS = ("pass", "fail", "unknown", "not_applicable", "error")
+VERDICTS = ("pass", "fail", "unknown", "not_applicable", "unrecorded", "error")
 OFF_MAP = {
     "exposure": [{"ego_id": "1", "km": 0.1, "duration_s": 25.0}],
     "not_judged": [
@@ -105,7 +105,12 @@ def test_junit_counts_what_the_exit_code_counts(
     about: dict[str, Any],
 ) -> None:
     """Failures are exit code 1, errors 2, 3 and 4; a green suite is exit code 0. Some failed verdicts have a finding, some none."""
-    verdicts = [verdict(v, profile=p, severity=severity, occurrence=n) for n, (v, p, _) in enumerate(rows)]
+    verdicts = [
+        verdict("not_applicable", reason_code="unrecorded_indicator", profile=p, severity=severity, occurrence=n)
+        if v == "unrecorded"
+        else verdict(v, profile=p, severity=severity, occurrence=n)
+        for n, (v, p, _) in enumerate(rows)
+    ]
     found = [
         finding(profile=p, severity=severity, occurrence=n) for n, (v, p, has) in enumerate(rows) if v == "fail" and has
     ]
@@ -152,6 +157,21 @@ def test_only_what_is_required_may_not_be_unknown() -> None:
     rows = [verdict("unknown"), verdict("pass", occurrence=1), verdict("unknown", rule_id="ukhc.other")]
     run = result(rows, rules=[rule(), rule("ukhc.other")], required=("ukhc.other",))
     assert outcomes(run) == {f"{SDA} [nominal]": "skipped", "ukhc.other [nominal]": "error"}
+
+
+@pytest.mark.parametrize(("strict", "shown"), [(True, "error"), (False, "skipped")])
+@pytest.mark.parametrize("others", [(), ("pass",)])
+def test_a_signal_that_the_log_lacks_is_an_error_only_if_it_causes_the_exit_code(
+    strict: bool, shown: str, others: tuple[str, ...]
+) -> None:
+    lacking = verdict("not_applicable", reason_code="unrecorded_indicator", reason="the log has no indicators")
+    run = result([lacking, *(verdict(v, occurrence=1) for v in others)], strict=strict)
+    case = parsed(run).find(".//testcase")
+    assert case is not None
+    if strict or not others:
+        assert [child.tag for child in case] == [shown]
+        assert "the log has no indicators" in (case[0].text or "")
+    assert exit_status(run).code == (ExitCode.NOT_JUDGED if strict or not others else ExitCode.OK)
 
 
 def test_a_failure_lists_its_findings_and_a_skip_its_reasons() -> None:

@@ -185,7 +185,7 @@ app.command("docs")(docs_.docs)
 
 
 OBJECTS_BEFORE_COLLECTION: Final = 50_000
-"""Number of new objects before a garbage collection: with Python's default of 700, short commands spend 4 % of their time on it."""
+"""New objects before a garbage collection. With the default of Python 3.11 and 3.12 (700), it takes 4 % of the time of short commands."""
 
 
 def main() -> NoReturn:

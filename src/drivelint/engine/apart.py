@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def judge_and_refuse_faulty(session: JudgingSession, drives: Sequence[Drive], refusals: list[RefusedLog]) -> None:
-    """Judge a batch; if it fails, judge its drives separately, and add those that fail to `refusals`.
+    """Judge a batch; if it fails, judge its drives separately (after a lack of memory: its halves), and add those that fail to `refusals`.
 
     Errors: those that no drive causes, such as a folder that cannot be written (`exit_code` 75).
     """

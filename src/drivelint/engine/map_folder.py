@@ -38,7 +38,7 @@ class MapFolder:
         self._files = {file.relative_to(folder).as_posix(): file for file in sorted(folder.rglob("*")) if _is_map(file)}
         if not self._files:
             raise MapError(
-                f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad, Lanelet2 or Argoverse 2)"
+                f"--map-dir {folder}: no map in this folder (OpenDRIVE, CommonRoad, SUMO, Lanelet2 or Argoverse 2)"
             )
         self._manifest = self._read_manifest()
         self._source = cache(lambda name: read_source(self._files[name]))

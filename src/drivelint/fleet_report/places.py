@@ -18,7 +18,7 @@ _WIDTH_PX: Final = 900
 _MAX_HEIGHT_PX: Final = 620
 _CELL_PX: Final = 6
 _M_PER_DEGREE: Final = 111_320.0
-"""Metres per degree of latitude, and of longitude at the equator, on a sphere with the earth's mean radius."""
+"""Metres per degree of longitude at the equator (WGS 84); also used for latitude."""
 _MIN_EXTENT_DEGREES: Final = 0.002
 
 

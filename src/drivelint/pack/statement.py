@@ -87,7 +87,10 @@ def statement_problems(statement: bytes, due: bytes) -> list[bag.Problem]:
 
 
 def altered_file_problems(statement: bytes, folder: Path) -> list[bag.Problem]:
-    """Return the files of a pack whose hashes are not those in its statement; the result in the pack may be unreadable."""
+    """Return the problems of the tag files (`FILES_IN_STATEMENT`) whose hashes are not those in the statement.
+
+    A missing tag file is no problem here. The result in the pack may be unreadable.
+    """
     try:
         listed = json.loads(statement)["predicate"]["drivelint_pack"]
     except (ValueError, KeyError, TypeError):

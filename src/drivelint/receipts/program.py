@@ -1,5 +1,5 @@
-"""Hashes everything that determines a result besides its inputs: the program, the installed packages, the request, and the working
-folder."""
+"""Hashes everything that determines a result besides its inputs: the program, Python's version and search path, the kind of machine, the
+installed packages, the request, and the working folder."""
 
 from __future__ import annotations
 

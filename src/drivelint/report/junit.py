@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 from lxml import etree
 
 from drivelint.gate import descriptions
+from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
@@ -54,9 +55,10 @@ def render(result: Result) -> bytes:
     """Return the report as UTF-8 XML; failures and errors are consistent with the exit code.
 
     A failure is a drive, rule and profile with a finding that causes exit code 1. An error is anything that causes exit code 2, 3 or 4:
-    a rule in error, a forbidden unknown verdict, a drive that was not judged, a map that does not fit, or a lossy log. A finding of
-    the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is skipped if it is not
-    applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their system-out.
+    a rule in error, a forbidden unknown verdict or one that lacks a signal of the log, a drive that was not judged, a map that does not
+    fit, or a lossy log. A finding of the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is
+    skipped if it is not applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their
+    system-out.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases_by_drive(result)
@@ -105,13 +107,14 @@ class _CaseLines(NamedTuple):
     stopping: list[str]
     not_gating: list[str]
     unknown: list[str]
+    lacking_signal: list[str]
     not_applicable: list[str]
     passed: list[str]
 
 
 def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     """Return the test cases of each drive by `drive_id`, in the order of the verdict table."""
-    told: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines([], [], [], [], [], []))
+    told: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines(*([] for _ in _CaseLines._fields)))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
     def add_failure(row: Row, text: str) -> None:
@@ -126,8 +129,9 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
     for row in _distinct_reasons(result.verdicts):
         lines = told[_case_key(row)]  # creates the case, in the order of the verdicts
-        if row["verdict"] in of_verdict:
-            getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
+        kind = "lacking_signal" if row["lacks_signal"] else of_verdict.get(row["verdict"])
+        if kind:
+            getattr(lines, kind).append(with_count(row["reason"], row["count_all"]))
     for row in result.findings.to_pylist():
         add_failure(row, verdict_or_finding_line(row, when(row, rules, starts.get(row["drive_id"]))))
     for row in _distinct_reasons(failures_without_finding(result)):
@@ -143,7 +147,9 @@ def _distinct_reasons(verdicts: pa.Table) -> Sequence[Row]:
     """Return each distinct verdict and reason of a drive, rule and profile with its count; the reason of a pass is ''."""
     reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
     columns = ["drive_id", "rule_id", "profile", "severity", "verdict"]
-    return counts.distinct_rows(verdicts.select(columns).append_column("reason", reason), [*columns, "reason"])
+    lacks = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX)
+    rows = verdicts.select(columns).append_column("reason", reason).append_column("lacks_signal", lacks)
+    return counts.distinct_rows(rows, rows.column_names)
 
 
 def _case_keys(rows: pa.Table) -> Iterator[CaseKey]:
@@ -151,10 +157,13 @@ def _case_keys(rows: pa.Table) -> Iterator[CaseKey]:
 
 
 def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
-    """Return the test case of a drive, rule and profile; `is_required`: an unknown verdict is an error."""
+    """Return the test case of a drive, rule and profile; `is_required`: an unknown verdict, or one that lacks a signal, is an error."""
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
     unknown = [f"unknown: {x}" for x in lines.unknown]
+    not_applicable = [f"not applicable: {x}" for x in [*lines.lacking_signal, *lines.not_applicable]]
+    if is_required:
+        unknown += [f"not recorded: {x}" for x in lines.lacking_signal]
     if lines.erred:
         return Case(name, "error", "error", lines.erred, [*lines.stopping, *lines.not_gating, *unknown])
     if lines.stopping:
@@ -165,7 +174,7 @@ def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
         return Case(name, "skipped", "unknown" if unknown else "does_not_gate", [*unknown, *lines.not_gating])
     if lines.passed:
         return Case(name, None, "pass", [])
-    return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in lines.not_applicable])
+    return Case(name, "skipped", "not_applicable", not_applicable)
 
 
 def _append_suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:

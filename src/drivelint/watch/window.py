@@ -90,7 +90,10 @@ class Window:
         return [placed.frame for placed in self._frames]
 
     def frames_since(self, t_ns: int) -> list[Frame]:
-        """Return the frames after the last frame older than `t_ns`, including waiting frames, in the order of their arrival."""
+        """Return the frames after the last frame older than `t_ns`, or after the last jump of the log's clock if that is later.
+
+        They include waiting frames, and are in the order of their arrival.
+        """
         found: list[Frame] = []
         for placed in chain(reversed(self._waiting), reversed(self._frames)):
             if placed.frame.t_ns < t_ns:

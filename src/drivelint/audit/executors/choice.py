@@ -38,5 +38,5 @@ def open_executor(cluster: str | None, *, workers: int | None, memory: int | Non
             f"--cluster {cluster}: {error.name} is not installed: pip install 'drivelint[{extra}]'"
         ) from error
     raise UsageError(
-        f"--cluster {cluster}: give the address of a Dask scheduler (tcp://..., tls://...) or of Ray (ray://..., auto)"
+        f"--cluster {cluster}: give the address of a Dask scheduler (tcp://..., tls://...) or of Ray (ray://..., HOST:PORT, auto)"
     )

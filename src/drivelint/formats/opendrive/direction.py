@@ -172,7 +172,10 @@ class DrivingSideStatements:
 def _report_disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, what_is_wrong: str, advice: str | None = None
 ) -> None:
-    """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness."""
+    """Report statements that disagree.
+
+    `what_is_wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness.
+    """
     if len({w.side for w in statements}) > 1:
         first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing

@@ -112,7 +112,9 @@ def _logical_lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
         )
     begin, end = max(begin, low), min(end, high)
     if not end > begin:
-        raise UnbuildableError("its boundaries have no length")
+        raise UnbuildableError(
+            f"its left and right boundaries have no common part between {message.start_s:g} and {message.end_s:g} m of its reference line"
+        )
     stations = np.concatenate([left[:, 3], right[:, 3]])
     at = np.unique(np.concatenate([[begin, end], stations[(stations > begin) & (stations < end)]]))
     first, second = (resampled(side[:, :3], side[:, 3], at) for side in (left, right))

@@ -44,7 +44,7 @@ def is_sqlite(path: Path) -> bool:
 
 @contextmanager
 def open_database(path: Path) -> Iterator[sqlite3.Connection]:
-    """Open a file of a bag whose tables have been checked. Errors: `TraceError` if it is damaged, not closed, or no bag."""
+    """Open a file of a bag, and check its tables. Errors: `TraceError` if it is damaged, not closed, or no bag."""
     _refuse_unfinished(path)
     with convert_errors(path):
         connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)

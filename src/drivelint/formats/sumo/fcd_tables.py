@@ -86,7 +86,7 @@ def read_csv(path: Path) -> Rows:
             ),
         )
     except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
-        raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
+        raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log again") from error
     return _rows_of_table(path, table, groups)
 
 

@@ -43,7 +43,7 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     """Add the light states that belong to a log.
 
     They are in the file with the log's name up to the first dot, or in the only file of light states in a folder with no other log.
-    `is_log` returns whether a file is a log. A note reports files that are not read.
+    `is_log` returns whether a file is a log. If no file or several files fit, a note names them.
     """
     files = [
         file for file in sorted(log.parent.glob(_LIGHT_STATES_FILE_PATTERN)) if file != log and _has_light_states(file)
