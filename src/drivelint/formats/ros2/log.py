@@ -61,9 +61,8 @@ class Log:
         self.notes: list[str] = []
         self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
-        self.undefined_ego = (
-            UnreadTopics()
-        )  # odometry and transforms without a definition, beside a topic that the user chose
+        # odometry and transforms without a definition, in a log of which the user chose another topic
+        self.undefined_ego = UnreadTopics()
         self.has_carla_messages = False
         self.is_sqlite = False
         self.ego_frame = ""  # the frame that places the ego, in a log without odometry
