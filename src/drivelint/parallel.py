@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
     from drivelint.evaluate.limits import Excess, UnstoppableRuleHandler
-    from drivelint.receipts.inputs import Inputs, IsOutput
+    from drivelint.receipts.inputs import IsOutput, RunInputs
     from drivelint.report.log_notes import LogNote
     from drivelint.result.model import Result
     from drivelint.run import CheckOptions, JudgedLogs
@@ -71,7 +71,7 @@ class _PartOutcome(NamedTuple):
     """The result of a part, and the inputs that were read for it."""
 
     judged_logs: JudgedLogs
-    inputs: Inputs | None
+    inputs: RunInputs | None
 
 
 class _UnstoppableRule(NamedTuple):

@@ -23,12 +23,12 @@ from tests.receipts.opened_files import opened_below
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.receipts.inputs import Inputs
+    from drivelint.receipts.inputs import RunInputs
 
 NO_OUTPUTS = OutputPathTest(None)
 
 
-def read_by(job: Callable[[], object], *named: Path) -> Inputs:
+def read_by(job: Callable[[], object], *named: Path) -> RunInputs:
     with record_inputs(NO_OUTPUTS, named) as recorder:
         job()
     inputs = recorder.inputs()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint.receipts import store
-from drivelint.receipts.inputs import Inputs
+from drivelint.receipts.inputs import RunInputs
 from drivelint.receipts.store import Receipt
 
 if TYPE_CHECKING:
@@ -30,7 +30,9 @@ def kept(out: Path, key: str = KEY, content: bytes = b"rows") -> Receipt:
     (out / "annotated" / "x.mcap").write_bytes(content[::-1])
     states = {"/log": "file 1", "/with \udcff": "absent"}
     sizes = {"a.parquet": len(content), "annotated/x.mcap": len(content)}
-    receipt = Receipt(Inputs(states, {"*": "2"}), "tëxt\n", ("a note",), 1, "2026-11-29", sizes, ("annotated/x.mcap",))
+    receipt = Receipt(
+        RunInputs(states, {"*": "2"}), "tëxt\n", ("a note",), 1, "2026-11-29", sizes, ("annotated/x.mcap",)
+    )
     store.store_receipt(key, receipt, out)
     return receipt
 
@@ -93,7 +95,7 @@ def test_receipts_take_no_more_bytes_than_they_may(home: Path, tmp_path: Path, m
 
 def test_a_file_that_changes_while_it_is_kept_leaves_nothing(home: Path, tmp_path: Path) -> None:
     (tmp_path / "x").write_bytes(b"longer")
-    store.store_receipt(KEY, Receipt(Inputs(), "", (), 0, files={"x": 3}), tmp_path)
+    store.store_receipt(KEY, Receipt(RunInputs(), "", (), 0, files={"x": 3}), tmp_path)
     assert list(home.iterdir()) == []
 
 

@@ -97,7 +97,7 @@ class CheckResult(TableSet):
     def report(self, path: AnyPath, *, to: ReportFormat = "html") -> Path: ...
     @with_argument_checks
     def report(self, path: AnyPath | None = None, *, to: ReportFormat = "html") -> str | Path:
-        """Return a report as text; or, with `to_path`, write it to this file and return the path.
+        """Return a report as text; or, with `path`, write it to this file and return the path.
 
         `to`: html, junit, sarif, xqar, markdown. Errors: `DriveLintError` if the file cannot be written.
         """

@@ -193,8 +193,9 @@ def _pack_receipts(
                 f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
             ).fetchone()
             if name == "drives" and written != (len(new),):
+                n_written = written[0] if written else 0
                 raise DriveLintError(
-                    f"{len(new)} receipts have {written} rows in the table drives: judge these drives again"
+                    f"{len(new)} receipts have {n_written} rows in the table drives: judge these drives again"
                 )
         con.unregister("_packed")
         _write_chunk(results, {name: file.read_bytes() for name, file in rows.items()}, table)

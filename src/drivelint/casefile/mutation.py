@@ -72,7 +72,7 @@ class _ListedSurvivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     reason: str
 
 
-class _SurvivorsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _ListedSurvivorsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     survivor: list[_ListedSurvivor] = []
 
 
@@ -165,6 +165,6 @@ def _read_survivors(file: Path) -> list[_ListedSurvivor]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _SurvivorsFile).survivor
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _ListedSurvivorsFile).survivor
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise RuleError(f"{file}: {error}") from error

@@ -19,7 +19,7 @@ from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.errors import UsageError
 from drivelint.explain import evidence
-from drivelint.explain.change import verdict_changes
+from drivelint.explain.change import nearest_changes_of_verdict
 from drivelint.explain.model import Explanation
 from drivelint.explain.sensitivity import errors_with_default_samples, sensitivity_of_check, verdict_sensitivity
 from drivelint.explain.source import open_drive
@@ -155,7 +155,7 @@ def _changes_and_sensitivity(
     of_verdict = errors_with_default_samples(errors, row["verdict"])
     if of_verdict.samples and sensitivity is None:
         sensitivity = verdict_sensitivity(context, part, of_verdict, span)
-    return verdict_changes(context, sandbox, verdict), sensitivity
+    return nearest_changes_of_verdict(context, sandbox, verdict), sensitivity
 
 
 def _context_of_verdict(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:

@@ -48,7 +48,7 @@ class _VariedNumber(NamedTuple):
     halvings: int
 
 
-def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[NearestChange]:
+def nearest_changes_of_verdict(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[NearestChange]:
     """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative change first.
 
     The tables of `sandbox` that are derived from profiles are not valid afterwards.

@@ -46,7 +46,7 @@ _REASON_TEXTS: Final = {
     "not_applicable": "the rule does not apply there",
 }
 """Reason code of `drivelint.fleet.compare` -> the reason as text."""
-_VERDICT_SENTENCES: Final = {
+_SENTENCE_BY_OTHER_AUDITS_VERDICT: Final = {
     "pass": "the rule is kept there",
     "fail": "the rule still fails, at another step or place",
     "unknown": "the rule is unknown there",
@@ -277,7 +277,11 @@ def _compared_finding(row: Row) -> ComparedFinding:
 def _change_or_reason(row: Row) -> str:
     """Return how a finding changed, or why the other audit does not have the finding."""
     if row["standing"] != "changed":
-        return _VERDICT_SENTENCES[row["there"]] if row["why_code"] == "judged" else _REASON_TEXTS[row["why_code"]]
+        return (
+            _SENTENCE_BY_OTHER_AUDITS_VERDICT[row["there"]]
+            if row["why_code"] == "judged"
+            else _REASON_TEXTS[row["why_code"]]
+        )
     if row["is_part"]:
         whole, part = (
             ("base_id", "finding_id") if _duration_s(row, "base_") > _duration_s(row, "") else ("finding_id", "base_id")

@@ -40,11 +40,13 @@ _FIXED_VERDICTS = ("pass", "not_applicable")
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
     """Return the difference of two results. `base_name` and `name` are shown to the reader.
 
-    `match.match_drives` finds the drives that both results have. Findings of `new` come first, in its order, then findings that only `base`
-    has.
+    `match.base_drive_by_new_drive` finds the drives that both results have. Findings of `new` come first, in its order, then findings that
+    only `base` has.
     """
     base_lookup, new_lookup = ResultLookup(base), ResultLookup(new)
-    base_id_by_new_id = match.match_drives(list(base_lookup.drives.values()), list(new_lookup.drives.values()))
+    base_id_by_new_id = match.base_drive_by_new_drive(
+        list(base_lookup.drives.values()), list(new_lookup.drives.values())
+    )
     entries: list[ComparedFinding] = []
     gone: list[ComparedFinding] = []
     for drive_id in dict.fromkeys([*new_lookup.findings, *base_id_by_new_id]):

@@ -38,7 +38,7 @@ def seconds_since_start(t_ns: int, drive: Row) -> float:
     return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
 
 
-def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
+def base_drive_by_new_drive(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
     """Return drive_id in `new` -> drive_id in `base`. Drives match by the same id, else by content, else by a file stem that is unique in
     both.
 

@@ -151,8 +151,9 @@ def _table_facts(
     join_names: Callable[[Iterable[str]], str],
     quote: str = "",
 ) -> list[str]:
-    """Return sentences about a table: how long it is kept, its file, the tables it reads, and the tables and rules that read it.
+    """Return sentences about a table: how long it is kept, the result file to which it is written, and which tables and rules read it.
 
+    The tables that it reads are named too.
     `join_names`: a function that joins names; `quote`: the mark around the file name.
     """
     sentences = [f"Kept {_LIFETIME_WORDS[lifetimes()[name]]}."]

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _NEAR_MISS_ID_PREFIX: Final = "near-miss-"
 """The beginning of the id of a near miss; the ids of findings are hexadecimal numbers."""
-_VERDICT_KEY_COLUMNS: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
+_COLUMNS_EQUAL_IN_FINDING_AND_VERDICT: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,11 @@ def _no_contact_message(result: Result, drive_id_prefix: str) -> str:
 
 def _worst_finding_of_verdict(verdict: Row, result: Result) -> dict[str, Any]:
     """Return the worst finding of a verdict. Errors: `UsageError` if it has none."""
-    rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _VERDICT_KEY_COLUMNS)]
+    rows = [
+        row
+        for row in result.findings.to_pylist()
+        if all(row[key] == verdict[key] for key in _COLUMNS_EQUAL_IN_FINDING_AND_VERDICT)
+    ]
     about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
     if verdict["verdict"] != "fail" or not about:
         tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}

@@ -89,7 +89,7 @@ def _table_content(path: Path, head: bytes, mapping: str | None, notes: list[str
         return Content(sheets=[_video_detections_sheet(path, film)], mapping=name, notes=notes)
     if mapping is not None:
         name, loaded = mappings.load(mapping)
-        return Content(sheets=[_mapped_sheet(path, loaded)], mapping=name, notes=notes)
+        return Content(sheets=[_listing_of_mapped_table(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
         sheet = _parquet_sheet(path)
         guess = (
@@ -133,7 +133,7 @@ def _sheet_of_table_file(path: Path) -> Sheet | None:
     return None
 
 
-def _mapped_sheet(path: Path, mapping: Mapping) -> Sheet:
+def _listing_of_mapped_table(path: Path, mapping: Mapping) -> Sheet:
     """Return a table's columns, first the columns that the mapping reads."""
     sheet = open_sheet(path, mapping)
     columns = _columns_of_mapping(mapping)

@@ -35,8 +35,9 @@ class Shot(NamedTuple):
 def planned_shots(result: Result, topics_by_drive: Mapping[str, Sequence[str]]) -> list[Shot]:
     """Return the pictures to take for a result, the most important first. `topics_by_drive`: drive_id -> topics of its cameras.
 
-    The first camera shows every moment, then the other cameras show the worst moments. So a picture that is not planned for a part of
-    the drives is not planned for all drives either.
+    The first camera shows every moment, then the other cameras show the worst moments. Every picture in the plan for all
+    drives is also in the plan for each part of the drives that contains its drive. So pictures can be taken part by part, and those that
+    are not in the plan for all drives are dropped later.
     """
     return shots_of_moments(_moments_worst_first(result, topics_by_drive), topics_by_drive)
 

@@ -29,7 +29,7 @@ def file_sha256(path: Path | str) -> str:
         return file_digest(file, "sha256").hexdigest()
 
 
-def path_state(path: str, is_output: IsOutput) -> str | None:
+def path_state_if_known(path: str, is_output: IsOutput) -> str | None:
     """Return a state that stays the same while nothing changes at a path; None: the state cannot be known, as for a pipe.
 
     The state of a file is its content, the state of a folder the names in it; both include the targets of links.
@@ -53,7 +53,7 @@ def hash_of_matches(pattern: str, is_output: IsOutput) -> str:
 
 
 @dataclass(frozen=True)
-class Inputs:
+class RunInputs:
     """The inputs of a run. `states`: absolute path -> state. `globs`: pattern -> hash of the names that matched."""
 
     states: dict[str, str] = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Inputs:
     def are_unchanged(self, is_output: IsOutput) -> bool:
         """Return whether all inputs have the same state as before."""
         names = all(hash_of_matches(pattern, is_output) == said for pattern, said in self.globs.items())
-        return names and all(path_state(path, is_output) == said for path, said in self.states.items())
+        return names and all(path_state_if_known(path, is_output) == said for path, said in self.states.items())
 
 
 def _hash_of_listing(folder: str, real_folder: str, is_output: IsOutput) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.memo import cache_folder
 from drivelint.receipts.events import NOT_REPEATABLE_EVENT, SEARCHED_PATH_EVENT
-from drivelint.receipts.inputs import Inputs, hash_of_matches, path_state
+from drivelint.receipts.inputs import RunInputs, hash_of_matches, path_state_if_known
 from drivelint.receipts.program import program_folders
 
 if TYPE_CHECKING:
@@ -59,11 +59,11 @@ class InputRecorder:
             return
         with self._lock:
             self._states[whole] = None
-            self._states[whole] = path_state(whole, self.is_output)
+            self._states[whole] = path_state_if_known(whole, self.is_output)
             if self._states[whole] is None:
                 self.trouble = f"{whole} cannot be looked at again"
 
-    def add(self, inputs: Inputs | None) -> None:
+    def add(self, inputs: RunInputs | None) -> None:
         """Add the inputs of another process of the same run; None: the part of that process depends on more than its inputs."""
         with self._lock:
             if inputs is None:
@@ -74,13 +74,13 @@ class InputRecorder:
                     if known.setdefault(name, said) != said:
                         self.trouble = f"{name} changed"
 
-    def inputs(self) -> Inputs | None:
+    def inputs(self) -> RunInputs | None:
         """Return the inputs; None: the result depends on more than the inputs, or they changed during the run."""
         self._inside.busy = True  # from here on, nothing is recorded in this thread
         if self.trouble is not None:
             return None
         read = {path: said for path, said in self._states.items() if said is not None}
-        found = Inputs(read, dict(self._globs))
+        found = RunInputs(read, dict(self._globs))
         return found if found.are_unchanged(self.is_output) else None
 
     def record_event(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:

@@ -17,7 +17,7 @@ from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any, Final
 
 from drivelint.memo import cache_folder
-from drivelint.receipts.inputs import Inputs
+from drivelint.receipts.inputs import RunInputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -39,7 +39,7 @@ class Receipt:
     `day`: the day of the run, if the result depends on it. `grown_files`: names of files that were written in pieces during the run.
     """
 
-    inputs: Inputs
+    inputs: RunInputs
     stdout: str
     notes: tuple[str, ...]
     exit_code: int
@@ -145,7 +145,7 @@ def _read_receipt(file: IO[bytes], key: str) -> OpenedReceipt | None:
 
 def _receipt_from_fields(stored_fields: Mapping[str, Any]) -> Receipt:
     lists = {name: tuple(stored_fields[name]) for name in ("notes", "grown_files")}
-    return Receipt(**{**stored_fields, **lists, "inputs": Inputs(**stored_fields["inputs"])})
+    return Receipt(**{**stored_fields, **lists, "inputs": RunInputs(**stored_fields["inputs"])})
 
 
 def _hash_of(file: IO[bytes], size: int) -> bytes:

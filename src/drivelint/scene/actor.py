@@ -149,7 +149,9 @@ class Actor:
                 speed = self._speed_knots_with_step(speed, step)
             if step.lane is not None or step.offset is not None:
                 begin, before = self._begin_of_step_s(step, speed), offset[-1][1]
-                target = self._offset_to_lane_m(step.lane) if step.lane is not None else float(step.offset or 0.0)
+                target = (
+                    self._offset_from_own_to_lane_m(step.lane) if step.lane is not None else float(step.offset or 0.0)
+                )
                 offset = [*offset, [begin, before], [begin + step.over, target]]
         return speed, offset
 
@@ -183,7 +185,7 @@ class Actor:
         kept = [knot for knot in speed if knot[0] < begin]
         return [*kept, [begin, now], [begin + max(abs(target - now) / step.by, DT_S), target]]
 
-    def _offset_to_lane_m(self, lane_number: int) -> float:
+    def _offset_from_own_to_lane_m(self, lane_number: int) -> float:
         lanes = self._lanes_of_route()
         if not lanes:
             raise UsageError(

@@ -63,12 +63,12 @@ class ContactFinder:
         tables = {f"_{name}": trace.tables[table] for name, table in _TRACE_TABLES.items()}
         with store.registered(self._con, tables):
             pairs = self._con.execute(self._statement, self._values).to_arrow_table().to_pylist()
-        self._apart &= {_pair_key(pair) for pair in pairs}
-        self._apart |= {_pair_key(pair) for pair in pairs if pair["is_apart"]}
+        self._apart &= {_rule_ego_and_object(pair) for pair in pairs}
+        self._apart |= {_rule_ego_and_object(pair) for pair in pairs if pair["is_apart"]}
         return [
             _finding_row(self._rules[pair["rule_id"]], pair, step)
             for pair in pairs
-            if pair["rule_id"] in self._rules and _pair_key(pair) in self._apart
+            if pair["rule_id"] in self._rules and _rule_ego_and_object(pair) in self._apart
             for step in pair["steps"] or ()
             if since_ns is None or step["t_ns"] > since_ns
         ]
@@ -77,7 +77,7 @@ class ContactFinder:
 _TRACE_TABLES: Final = {"state": "actor_state", "actor": "actor", "quality": "quality"}
 
 
-def _pair_key(pair: Row) -> tuple[str, str, str]:
+def _rule_ego_and_object(pair: Row) -> tuple[str, str, str]:
     return pair["rule_id"], pair["ego_id"], pair["object_id"]
 
 

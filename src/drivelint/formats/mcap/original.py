@@ -165,7 +165,7 @@ class OriginalFile:
             self.schemas, self.channels = schemas | self.schemas, channels | self.channels
         if not chunks or self._are_indexes_complete(counts, messages, indexed_channels):
             return True
-        self._read_channels_in_chunks(chunks)
+        self._read_schemas_and_channels_in_chunks(chunks)
         return False
 
     def _schemas_channels_statistics(
@@ -191,7 +191,7 @@ class OriginalFile:
                     raise self.damage_error(record.at)
         return schemas, channels, counts
 
-    def _read_channels_in_chunks(self, chunks: list[Record]) -> None:
+    def _read_schemas_and_channels_in_chunks(self, chunks: list[Record]) -> None:
         for chunk in chunks:
             with self.convert_errors(chunk):
                 for opcode, _, body in self.chunk_records(chunk):

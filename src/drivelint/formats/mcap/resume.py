@@ -26,7 +26,10 @@ _LEAST_CHAIN_MESSAGES: Final = 3
 """Bytes that look like this many consecutive messages on known channels are certainly messages."""
 _LEAST_MESSAGE_BYTES: Final = 22
 _MOST_UNPACKED_FILE_SIZES: Final = 4
-"""A search unpacks at most this multiple of the file's size, so that it also ends for a file full of false chunk headers."""
+"""A search unpacks at most this multiple of the file's size (`_LEAST_UNPACKING_LIMIT_BYTES`, if that is more).
+
+So it also ends for a file full of false chunk headers.
+"""
 _LEAST_UNPACKING_LIMIT_BYTES: Final = 64 << 20
 """A search may unpack this many bytes of any file."""
 

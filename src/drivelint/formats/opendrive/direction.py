@@ -91,7 +91,9 @@ class DrivingSideStatements:
         """Return the direction of the lanes on two-way roads, where it follows from the driving side."""
         return self._direction_by_statement("rht", self.statements[0] if self.statements else None)
 
-    def final_direction(self, side_by_opposing_lanes: str | None, quality: MapQuality) -> DrivingDirection:
+    def driving_side_and_lane_direction(
+        self, side_by_opposing_lanes: str | None, quality: MapQuality
+    ) -> DrivingDirection:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
         `side_by_opposing_lanes`: `rht` or `lht`, the driving side that follows from adjacent lanes with opposite directions; None: there

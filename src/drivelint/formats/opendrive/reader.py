@@ -84,7 +84,7 @@ def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality)
         side = opposite_side(side)
     built = quality.rows[noted:]
     del quality.rows[noted:]
-    direction = witnesses.final_direction(side, quality)
+    direction = witnesses.driving_side_and_lane_direction(side, quality)
     if (direction.forward, direction.travel) != (first.forward, first.travel):
         lanes = build_lanelets(net, direction, request.offset, quality)
     else:

@@ -105,7 +105,7 @@ def _line_of_boundaries(boundaries: list[Floats]) -> Floats:
     """Return one side's boundaries joined to a line (n, 3). Errors: `UnbuildableError` for too few points or too large gaps."""
     boundaries = [part for part in boundaries if len(part) > 1]
     if not boundaries:
-        raise UnbuildableError("a boundary has fewer than two points")
+        raise UnbuildableError("none of its boundaries on one side has two points")
     gaps = np.array([[np.hypot(*(b[0] - a[-1])[:2]) for b in boundaries] for a in boundaries])
     np.fill_diagonal(gaps, np.inf)
     at = int(np.argmax(gaps.min(axis=0))) if len(boundaries) > 1 else 0  # the boundary that follows no other

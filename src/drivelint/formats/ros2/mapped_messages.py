@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from drivelint.formats.probe import Probe
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
-    from drivelint.formats.ros2.topic_mapping import MappedTopic, MessageMapping
+    from drivelint.formats.ros2.topic_mapping import MappedTopic, RosMappingFile
     from drivelint.formats.ros2.types import Types
 
 _TOPICS_APART_NS: Final = 1_000_000_000
@@ -104,7 +104,7 @@ def read(probe: Probe) -> Recording:
 class _MappedMessages:
     """The decoded fields of the topics of a mapping."""
 
-    def __init__(self, path: Path, message_mapping: MessageMapping, folder: Path) -> None:
+    def __init__(self, path: Path, message_mapping: RosMappingFile, folder: Path) -> None:
         self._path, self._message_mapping = path, message_mapping
         self._definitions = None if message_mapping.message_files is None else folder / message_mapping.message_files
         self._topics = {topic.topic: topic for topic in message_mapping.ros}
@@ -242,7 +242,7 @@ def _frame_field(topic: MappedTopic) -> str:
     return f"{topic.time.rpartition('.')[0]}.frame_id".removeprefix(".")
 
 
-def _refuse_shared_ids(path: Path, message_mapping: MessageMapping, recordings: Sequence[Recording]) -> None:
+def _refuse_shared_ids(path: Path, message_mapping: RosMappingFile, recordings: Sequence[Recording]) -> None:
     """Raise `TraceError` if two topics have actors with the same id: their states would become one track."""
     topic_by_id: dict[str, str] = {}
     for topic, recording in zip(message_mapping.ros, recordings, strict=True):
@@ -264,7 +264,7 @@ def _field_paths(types: Types, kind: str, prefix: str) -> Iterator[str]:
             yield f"{prefix}{member.name}"
 
 
-def _decoded_fields(topic: MappedTopic, message_mapping: MessageMapping) -> FieldTree:
+def _decoded_fields(topic: MappedTopic, message_mapping: RosMappingFile) -> FieldTree:
     """Return the fields of a message that are decoded."""
     names = [
         name

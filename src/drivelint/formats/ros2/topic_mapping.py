@@ -44,7 +44,7 @@ class MappedTopic(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     brake_light: WordMapping | None = None
 
 
-class MessageMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class RosMappingFile(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A whole mapping file.
 
     `message_files`: a folder, relative to the mapping, with files `PACKAGE/msg/NAME.msg`, for logs without message definitions.
@@ -67,7 +67,7 @@ class MessageMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 # built at import, because msgspec analyses a type at its first use without a lock
-DECODER = msgspec.json.Decoder(MessageMapping)
+DECODER = msgspec.json.Decoder(RosMappingFile)
 
 
 def is_message_mapping(name: str) -> bool:
@@ -80,12 +80,12 @@ def is_message_mapping(name: str) -> bool:
         return False
 
 
-def load(path: Path) -> MessageMapping:
+def load(path: Path) -> RosMappingFile:
     """Return the content of a mapping. Errors: `UsageError` with file, wrong key and the most similar valid key."""
     raw = read_toml(path)
-    refuse_unknown_keys(path, raw, MessageMapping, "")
+    refuse_unknown_keys(path, raw, RosMappingFile, "")
     try:
-        message_mapping = msgspec.convert(raw, MessageMapping)
+        message_mapping = msgspec.convert(raw, RosMappingFile)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
     topics = [each.topic for each in message_mapping.ros]

@@ -24,7 +24,7 @@ PERSON_OR_CONTAINER: Final = 3
 UNKNOWN_KIND: Final = -1
 NUMBER_ATTRIBUTES: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
 ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBER_ATTRIBUTES)
-"""The attributes that are read."""
+"""The attributes that are kept of each row, besides `time`."""
 TEXT_ATTRIBUTES: Final = frozenset({"id", "type", "vehicle"})
 
 
