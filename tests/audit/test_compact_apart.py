@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from drivelint.audit import run as audit_run
-from drivelint.audit.compact import chunk_ids, compact
+from drivelint.audit.compact import batch_rows_query, chunk_ids, compact
 from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.store import LocalFolder, ResultStore
-from drivelint.errors import UsageError
+from drivelint.errors import DriveLintError, UsageError
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 
@@ -56,3 +56,14 @@ def test_its_errors_keep_their_type(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
     with pytest.raises(UsageError, match="not a receipt of drivelint"):
         judged(drives, tmp_path / "out", Watched(tmp_path / "out", spoiled=True))
+
+
+@pytest.mark.ci
+def test_receipts_without_rows_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drives = fleet.write(tmp_path / "fleet", 2)
+    rows = batch_rows_query
+    monkeypatch.setattr(
+        "drivelint.audit.compact.batch_rows_query", lambda *about: f"SELECT * FROM ({rows(*about)}) LIMIT 0"
+    )
+    with pytest.raises(DriveLintError, match=r"^2 receipts have 0 rows in the table drives"):
+        judged(drives, tmp_path / "out")
