@@ -33,7 +33,7 @@ def kills(n_drives: int, n_kills: int) -> None:
         limit = ("--worker-memory", f"{fleet.LITTLE_BYTES // 10**6}MB")
         begin = time.monotonic()
         command = drives.command(Path(killed_out), *limit)
-        code, killed = audit_with_kills([*command[:2], str(greedy), *command[2:]], n_kills, 20.0)
+        code, killed = audit_with_kills([*command[:2], str(greedy), *command[2:]], n_kills, 4.0)
         print(f"with {killed} kills: exit {code}, {time.monotonic() - begin:.0f} s", flush=True)
         told = [_summary(killed_out)]
         _run(drives.command(Path(killed_out), "--prune"))  # without the greedy drive, which no table may show any more
