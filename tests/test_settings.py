@@ -106,6 +106,14 @@ def test_waivers_of_a_project(tmp_path: Path) -> None:
     assert (found.rule, found.where) == ("ukhc.*", f"{file}:7")
 
 
+def test_the_schema_of_a_rules_header_is_printed(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, "docs", "header-schema") == 0
+    kept = json.loads((ROOT / "schemas" / "assertion-header.schema.json").read_text(encoding="utf-8"))
+    assert json.loads(capfd.readouterr().out) == kept
+
+
 def test_the_schema_for_editors_is_that_of_the_options(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

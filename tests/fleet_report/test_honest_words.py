@@ -178,3 +178,15 @@ def test_a_worst_drive_has_its_finding_the_time_and_the_command_that_explains_it
     )
     assert "drivelint explain a-0 --in drives/a" in row.xpath(".//code[@class='command']")[1].text_content()
     assert "No collision at 12.50 s" in told.markdown
+
+
+def test_the_worst_finding_says_what_went_wrong_and_occasions_judged_in_part_are_beside_the_share() -> None:
+    whole, partly = words("a"), [{**row, "n_judged": 1, "n_expected": 2} for row in words("b", "fail")]
+    told = Told([ego_drive("a"), ego_drive("b")], [*whole, *partly], [touched("b")])
+    (rate,) = [each for each in told.content.rates if each.rule_id == "z-contact"]
+    assert (rate.occasions, rate.occasions_failed, rate.occasions_partly) == (1, 0, 1)
+    assert "+ 1 judged in part" in told.row("//div[contains(@class, 'rate-table')]", "z-contact").text_content()
+    assert ", + 1 judged in part |" in told.markdown
+    worst = told.row("//div[contains(@class, 'worst-table')]", "b").text_content()
+    assert worst.count("Not kept: No collision") == 2, "the worst finding, and the broken rules"
+    assert "Not kept: No collision at 12.50 s" in told.markdown

@@ -11,6 +11,7 @@ from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
 from drivelint.result.geometry import EARTH_GEOMETRY_COLUMN, GEOMETRIES_OF_TABLE, with_geometry
 from drivelint.sql import store
+from drivelint.sql.internal_names import without_internal_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -170,7 +171,8 @@ class TableSet:
                 rows = answer.to_arrow_table()
                 return Table(rows.rename_columns(_unique_names(rows.column_names)))
             except duckdb.Error as error:
-                raise UsageError(f"the query failed: {error}") from None  # the message has DuckDB's error already
+                # the message has DuckDB's error already
+                raise UsageError(f"the query failed: {without_internal_names(str(error))}") from None
 
     def _queryable_tables(self) -> dict[str, Any]:
         return {name: table.arrow() for name, table in self.tables.items()}

@@ -20,6 +20,7 @@ from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import terminal_safe, terminal_safe_json
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.folder import changed_files
+from drivelint.sql.internal_names import without_internal_names
 from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
 
@@ -55,7 +56,7 @@ def run_query(dest: str, query: str, format_: str, warn: Callable[[str], None] =
                 return _CSV_CELL.sub(_safe_cell, file.read_text(encoding="utf-8"))
             rows = con.execute(statements[0]).to_arrow_table().to_pylist()
         except duckdb.Error as error:
-            raise UsageError(f"drivelint sql: {' '.join(str(error).split())[:400]}") from error
+            raise UsageError(f"drivelint sql: {' '.join(without_internal_names(str(error)).split())[:400]}") from error
     return terminal_safe_json(json.dumps(rows, indent=2, default=str, ensure_ascii=False)) + "\n"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
 SETTINGS_SCHEMA: Final = "settings-schema"
 """The topic that prints the JSON schema of `drivelint.toml`."""
+
+HEADER_SCHEMA: Final = "header-schema"
+"""The topic that prints the JSON schema of a rule's header."""
 
 
 def docs(
@@ -39,7 +43,8 @@ def docs(
 
     docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
     shipped rules as Markdown; docs reasons prints every reason code with its words; docs macros prints the macros that rules
-    can call; docs settings-schema prints the JSON schema of drivelint.toml, for editors.
+    can call; docs settings-schema prints the JSON schema of drivelint.toml, for editors; docs
+    header-schema prints that of a rule's header.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.
@@ -65,6 +70,10 @@ def docs(
 
         root: Any = ctx.find_root().command
         typer.echo(settings_schema(root.commands["check"].params), nl=False)
+    elif topic == HEADER_SCHEMA:
+        from drivelint.catalogue import json_schema
+
+        typer.echo(json.dumps(json_schema(), indent=2))
     else:
         typer.echo(guide.text(topic, table), nl=False)
 

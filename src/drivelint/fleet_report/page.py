@@ -21,6 +21,7 @@ from drivelint.report.html.environment import page_environment
 from drivelint.report.markdown import escape_markdown, markdown_code
 from drivelint.report.progress import Silent
 from drivelint.result.counts import SEVERITIES, VERDICTS
+from drivelint.result.text import breach_title
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
@@ -122,6 +123,7 @@ def _template_values(fleet: FleetContent) -> dict[str, Any]:
         "standings": [(title, fleet.coverage.with_standing(name)) for name, title in _STANDING_TITLES.items()],
         "diff_titles": DIFF_STATUS_TITLES,
         "titles": {rule_id: rule["title"] for rule_id, rule in fleet.rules.items()},
+        "breach_titles": {rule_id: breach_title(rule) for rule_id, rule in fleet.rules.items()},
     }
 
 

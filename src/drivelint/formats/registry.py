@@ -145,12 +145,12 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     suffix = path.suffix.lower()
     if suffix == ".osi" and not may_be_osi_trace(head, path.stat().st_size):
         raise TraceError(
-            f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
+            f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:8]!r} at "
             "byte 0: copy it again"
         )
     magic = FIRST_BYTES_BY_SUFFIX.get(suffix)
     if magic is not None and not head.removeprefix(codecs.BOM_UTF8).startswith(magic):
         raise TraceError(
-            f"{path}: not {suffix[1:]}: it should begin {magic!r} and begins {head[:32]!r} at byte 0: copy it again"
+            f"{path}: not {suffix[1:]}: it should begin {magic!r} and begins {head[:8]!r} at byte 0: copy it again"
         )
     return Probe(path, head, options)
