@@ -50,10 +50,10 @@ def number_in(jpeg: bytes) -> int:
     return sum(int(middle[(2 * bit + 1) * len(middle) // (2 * BITS)] > 127) << bit for bit in range(BITS))
 
 
-def jpeg(pixels: NDArray[np.uint8], form: str = "JPEG") -> bytes:
+def jpeg(pixels: NDArray[np.uint8], form: str = "JPEG", quality: int = 75) -> bytes:
     """Return pixels as an image file."""
     sink = io.BytesIO()
-    Image.fromarray(pixels).save(sink, form)
+    Image.fromarray(pixels).save(sink, form, quality=quality)
     return sink.getvalue()
 
 

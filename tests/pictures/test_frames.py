@@ -13,6 +13,7 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, ti
 from hypothesis import given
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
+from PIL import Image
 
 from drivelint.pictures.frames import (
     EncodedImage,
@@ -171,6 +172,17 @@ def test_a_picture_is_small_whatever_it_shows() -> None:
     shown = small_jpeg(EncodedImage(jpeg(noise)))
     assert (shown.width_px, shown.height_px) == (480, 270)  # a quarter
     assert len(shown.data) <= LOWER_QUALITY_ABOVE_BYTES
+
+
+@pytest.mark.parametrize(("first", "last"), [(0, 360), (0, 180), (180, 360), (170, 190), (0, 0)])
+def test_the_quality_follows_the_whole_picture(first: int, last: int) -> None:
+    """A part of the rows is of noise: a sixth of the rows tells whether full quality is too large."""
+    pixels = np.full((360, 640, 3), 90, np.uint8)
+    pixels[first:last] = np.random.default_rng(0).integers(0, 256, (last - first, 640, 3), np.uint8)
+    shown, full = small_jpeg(Image.fromarray(pixels)), jpeg(pixels, quality=70)
+    same_tables = shown.data[:600] == full[:600]  # those of quantisation
+    assert same_tables == (len(full) <= LOWER_QUALITY_ABOVE_BYTES)
+    assert len(shown.data) <= 1.1 * LOWER_QUALITY_ABOVE_BYTES
 
 
 def test_what_shows_no_picture_is_no_camera() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 from typing import TYPE_CHECKING, Any, Final
 
+from markupsafe import Markup
+
 from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
@@ -59,7 +61,7 @@ def add_pictures(
 
 def _shot_for_page(row: dict[str, Any]) -> dict[str, Any]:
     return {
-        "src": "data:image/jpeg;base64," + base64.b64encode(row["jpeg"]).decode(),
+        "src": Markup("data:image/jpeg;base64,") + Markup(base64.b64encode(row["jpeg"]).decode()),  # noqa: S704 - no special characters
         "width": row["width_px"],
         "height": row["height_px"],
         "is_at": row["shot"] == "at",
