@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -28,10 +29,13 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
     from drivelint.pictures.frames import FramePlace, FrameSource
+    from drivelint.pictures.images import Jpeg
     from drivelint.pictures.shots import Shot
     from drivelint.result.model import Result
 
 
+_MOST_CACHED_JPEGS: Final = 256
+"""How many pictures are kept, each of some 30 kB."""
 D123_FORMAT: Final = "123d"
 """The format of `drivelint.formats.d123`, whose modules are imported only for its logs."""
 
@@ -80,9 +84,10 @@ class PictureTaker:
             drive = self._drives[drive_id]
             try:
                 with drive.open_log() as log:
+                    jpeg_of = _cached_jpegs(log)
                     for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
                         asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
-                        rows += _picture_rows(log, drive, asked, troubles)
+                        rows += _picture_rows(log, drive, asked, jpeg_of, troubles)
             except (OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
                 troubles[PictureTrouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
         if not rows:
@@ -115,12 +120,18 @@ def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
     return None
 
 
-def _picture_rows(
-    log: FrameSource, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[PictureTrouble, None]
-) -> list[dict[str, Any]]:
-    """Return the rows of the shots of one moment by one camera, in time order; no frame is used twice."""
+def _cached_jpegs(log: FrameSource) -> Callable[[str, FramePlace], Jpeg]:
+    """Return a function that makes a small JPEG of a camera's frame; moments that are near each other share frames."""
     from drivelint.pictures.images import small_jpeg
 
+    return lru_cache(maxsize=_MOST_CACHED_JPEGS)(lambda topic, place: small_jpeg(log.picture(topic, place)))
+
+
+def _picture_rows(
+    log: FrameSource, drive: DriveCameras, shots: Sequence[Shot], jpeg_of: Callable[[str, FramePlace], Jpeg],
+    troubles: dict[PictureTrouble, None],
+) -> list[dict[str, Any]]:  # fmt: skip
+    """Return the rows of the shots of one moment by one camera, in time order; no frame is used twice."""
     topic = drive.topics[shots[0].camera_no]
     rows: list[dict[str, Any]] = []
     shown_places: set[FramePlace] = set()
@@ -130,7 +141,7 @@ def _picture_rows(
             if frame is None or frame[0] in shown_places:
                 continue
             shown_places.add(frame[0])
-            picture = small_jpeg(log.picture(topic, frame[0]))
+            picture = jpeg_of(topic, frame[0])
         except FrameError as error:
             troubles.setdefault(PictureTrouble(drive.path, f"camera {topic}: no picture of {error}"))
             continue

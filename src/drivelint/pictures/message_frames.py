@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Final
 
 from drivelint.pictures.frames import VideoFrame
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from PIL.Image import Image
 
     from drivelint.pictures.frames import EncodedImage, Frame, FramePlace, RawImage
+
+
+_MOST_CACHED_STAMPS: Final = 65_536
+"""How many stamps are kept: moments of a drive that are near each other search the same frames."""
 
 
 class MessageFrameSource(ABC):
@@ -26,7 +33,11 @@ class MessageFrameSource(ABC):
 
     def stamp_ns(self, place: FramePlace) -> int | None:
         """Return when the frame at a place was taken, by its message; None: the message has no time."""
-        return self.frame(place).stamp_ns
+        return self._cached_stamp_ns(place)
+
+    @cached_property
+    def _cached_stamp_ns(self) -> Callable[[FramePlace], int | None]:
+        return lru_cache(maxsize=_MOST_CACHED_STAMPS)(lambda place: self.frame(place).stamp_ns)
 
     def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:
         """Return the image at a place; a frame of a video is decoded."""
