@@ -38,6 +38,7 @@ def ego_places(log: Path, ego: str | None) -> dict[int, tuple[float, float]]:
     return {round(float(row["time"]) * 1e9): (float(row["x"]), -float(row["y"])) for row in mine}
 
 
+@pytest.mark.ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", LOGS)
 def test_a_recorded_drive_is_where_pyproj_puts_it(tmp_path: Path, name: str) -> None:

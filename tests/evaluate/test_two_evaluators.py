@@ -145,6 +145,7 @@ def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[na
     return found or [naive.Outcome(-1, -1, "not_applicable", code, None, 0, 0)]
 
 
+@pytest.mark.ci
 @settings(max_examples=10, deadline=None, derandomize=True, phases=PHASES)
 @given(subjects=st.lists(SUBJECT, min_size=15, max_size=25))
 def test_the_engine_and_a_naive_evaluator_agree(

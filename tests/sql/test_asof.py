@@ -78,6 +78,7 @@ def past_a_lorry(*, on_map: bool) -> Drive:
     return scenes.saying(made, [(1.0, "automated", "on"), (9.0, "automated", "off")])
 
 
+@pytest.mark.ci
 def test_right_sides_are_unique_by_the_columns_of_the_condition(tmp_path: Path) -> None:
     rules = catalogue.load_rules(())
     selected = catalogue.select_rules(rules, tuple(rules), ())
