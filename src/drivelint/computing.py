@@ -46,7 +46,7 @@ def resident_bytes(process: int | None = None) -> int:
 
 
 def _read_system_file(path: str) -> bytes:
-    """Return the content of a system file, without a `Path` object: creating it would take longer than reading the file."""
+    """Return the first 1024 bytes of a system file, without a `Path` object: creating it would take longer than reading the file."""
     file = os.open(path, os.O_RDONLY)
     try:
         return os.read(file, 1024)

@@ -88,6 +88,15 @@ def test_the_words_of_a_rules_reference_points_are_known_in_its_condition(tmp_pa
         write(tmp_path, header, {**sections, "condition": sections["condition"].format("lefft")})
 
 
+def test_a_section_that_is_too_deep_for_the_check_of_words_is_named() -> None:
+    sections = {
+        "condition": "SELECT drive_id, ego_id, t_ns, speed_mps > 1 AS holds FROM ego_state",
+        "applies": "SELECT e.drive_id, e.ego_id, e.t_ns, true AS applies FROM ego_state e" + " CROSS JOIN step" * 900,
+    }
+    with pytest.raises(RuleError, match=r"^applies, byte 0: too deeply nested"):
+        refuse_wrong_words(sections, {}, lambda part, offset: f"{part}, byte {offset}")
+
+
 def test_the_default_of_a_parameter_and_its_value_are_words_too(tmp_path: Path) -> None:
     with pytest.raises(
         RuleError, match=r"rule\.sql:\d+: parameter 'kind': 'cyclist' is no actor class; did you mean 'bicycle'\?"

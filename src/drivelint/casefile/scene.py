@@ -182,7 +182,7 @@ def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[An
             continue
         match = _RANGE.fullmatch(str(key)) or re.fullmatch(rf"({_NUMBER})()()", str(key))
         if not match:
-            raise RuleError(f"{where}: {key!r} is no time: write 5.0, 5.0..5.3 or else")
+            raise RuleError(f"{where}: {key!r} is no time: write 5.0, 5.0..5.3 or 'else'")
         first = round(Decimal(match[1]) * 10**9)
         last = round(Decimal(match[2] or match[1]) * 10**9)
         rows = [chosen if first <= t <= last else old for t, old in zip(times, rows, strict=True)]

@@ -25,8 +25,8 @@ def refuse_wrong_words(
     """
     try:
         found = _checked_queries(sections)
-    except RecursionError as error:
-        raise RuleError(f"{place_of('condition', 0)}: too deeply nested to be checked: split it into CTEs") from error
+    except _DeepSectionError as error:
+        raise RuleError(f"{place_of(error.section, 0)}: too deeply nested to be checked: split it into CTEs") from error
     for name, checked in found.items():
         for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0):
             raise RuleError(f"{place_of(name, wrong.offset or 0)}: {wrong.message}")
@@ -47,12 +47,26 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     return None
 
 
+class _DeepSectionError(RecursionError):
+    """Raised for a section that is too deeply nested to be checked."""
+
+    def __init__(self, section: str) -> None:
+        super().__init__(section)
+        self.section = section
+
+
 def _checked_queries(sections: Mapping[str, str]) -> dict[str, word_check.CheckedQuery]:
-    """Return section -> its checked query. For the other sections, the engine's tables have the columns of @reference."""
+    """Return section -> its checked query. For the other sections, the engine's tables have the columns of @reference.
+
+    Errors: `_DeepSectionError`.
+    """
     found: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}
     for name in sorted(sections, key=lambda each: each != "reference"):
-        found[name] = word_check.check_query(syntax.parse_select(sections[name], name), tables)
+        try:
+            found[name] = word_check.check_query(syntax.parse_select(sections[name], name), tables)
+        except RecursionError as error:
+            raise _DeepSectionError(name) from error
         if name == "reference":
             columns = found[name].relation._replace(complete=False)
             tables = {"reference": columns, "reference_step": columns}

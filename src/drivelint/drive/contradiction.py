@@ -2,9 +2,11 @@
 
 Plausible positions take precedence over velocities and headings:
 
-* If a position stands still although the velocity is not 0, the whole state is unknown: position, heading and velocity.
-* If positions and velocities both show motion over half a second but differ, the position is used and the velocity is unknown.
-* If the heading turns round between two samples while the motion continues, it is turned back. A heading across the motion is unknown.
+* If position and velocity differ by far (`MISMATCH_M`, `SINGLE_STEP_MISMATCH_M`), the whole state is unknown: position, heading and
+  velocity. For example, the position stands still although the velocity is not 0.
+* If they differ by less, but for half a second (`STRETCH_MISMATCH_MPS`), the position is used and the velocity is unknown.
+* A heading opposite to the motion is turned round, unless the vehicle may be reversing. A heading across the motion is unknown, unless the
+  vehicle may be sliding.
 
 It also reports rejected positions that overlap another actor: it is then unknown how near the two came. `jumps` treats jumps.
 """
@@ -264,7 +266,7 @@ def _rows_half_second_around(states: States, pieces: NDArray[np.integer], rows: 
 
 
 def _rows_with_direction(states: States, rows: Mask) -> Mask:
-    """Return the mask of marked rows where the motion has a direction: the positions advance about as far as the speed states."""
+    """Return the mask of marked rows where the motion has a direction, as `DIRECTION_LEAST_SHARE` defines it."""
     marked_rows = np.flatnonzero(rows)
     first, last = _rows_half_second_around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])

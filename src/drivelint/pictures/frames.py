@@ -206,7 +206,7 @@ def _foxglove_frame(kind: str, fields: dict[str, Any]) -> Frame:
 
 
 def _protobuf_fields(type_name: str, schema_data: bytes, data: bytes) -> dict[str, Any]:
-    """Return field name -> value of a message; its time stamp becomes a dictionary."""
+    """Return field name -> value of a message; the field `timestamp` becomes a dictionary of `sec` and `nsec`."""
     message = _message_class(type_name, schema_data).FromString(data)
     fields = {field.name: getattr(message, field.name) for field in message.DESCRIPTOR.fields}
     if "timestamp" in fields:

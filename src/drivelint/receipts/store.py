@@ -122,7 +122,7 @@ def _write_receipt(target: IO[bytes], key: str, receipt: Receipt, files: Sequenc
         with file.open("rb") as content:
             copyfileobj(content, target, _PIECE_BYTES)
         if target.tell() - before != size:
-            raise OSError(f"{file} changed")
+            raise OSError(f"{file}: its size changed after the run wrote it")
     target.flush()
     with Path(target.name).open("rb") as written:
         target.write(_hash_of(written, target.tell()))

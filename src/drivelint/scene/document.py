@@ -142,7 +142,7 @@ class RecorderFaults(_StrictMapping, frozen=True):
     """Standard deviation of the noise of positions (m) and speeds (m/s); the random numbers are always the same."""
     lost_spans: Spans = msgspec.field(default_factory=list, name="lost")
     turned: Spans = []
-    """When the heading is turned by 180 degrees."""
+    """When the recorded heading is wrong by 180 degrees."""
     frozen: Spans = []
     """When the recorded position stays the same, although the recorded speed continues."""
     swapped: bool = False

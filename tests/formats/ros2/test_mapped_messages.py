@@ -186,7 +186,9 @@ def test_a_bag_without_definitions_is_read_with_the_files_of_its_messages(tmp_pa
     text = 'message_files = "msgs"\n' + (tmp_path / "acme.toml").read_text(encoding="utf-8")
     put(tmp_path / "acme.toml", text)
     with pytest.raises(
-        UsageError, match=r"msgs/acme_msgs/msg/EgoState.msg: the definition of acme_msgs/EgoState cannot be read"
+        UsageError,
+        match=r"msgs/acme_msgs/msg/EgoState.msg: the definition of acme_msgs/EgoState cannot be read: .*: "
+        r"copy the folder msg of the package acme_msgs into .*/msgs/acme_msgs$",
     ):
         read_trace(old, IngestOptions(mapping=path))
     folder = tmp_path / "msgs" / "acme_msgs" / "msg"

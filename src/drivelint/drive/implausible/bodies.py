@@ -263,7 +263,10 @@ def _are_in_line(first: _Boxes, second: _Boxes) -> Mask:
 
 
 def _are_coupled(first: _Boxes, second: _Boxes) -> bool:
-    """Return whether two tracks are coupled: close behind each other, in line, at speed in all common samples, with an overlap."""
+    """Return whether two tracks are coupled, which means that they are one body.
+
+    All common samples are in line and close behind each other, the median speed is high enough, and some sample overlaps.
+    """
     line = _are_in_line(first, second)
     if len(line) < LEAST_COUPLED_SAMPLES or not line.all():
         return False
@@ -275,7 +278,7 @@ def _are_coupled(first: _Boxes, second: _Boxes) -> bool:
 def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     """Return the mask of the first common samples (n) with doubtful positions, because two moving tracks overlap from the start.
 
-    It extends until the boxes are as far apart as they overlapped, and is empty after an impact.
+    It extends until the boxes are as far apart as they overlapped. If a velocity changes as in an impact meanwhile, it is empty.
     """
     across, depth = _overlaps_m(first, second)[0][1], _overlaps_m(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))

@@ -62,7 +62,9 @@ class EdgeEvaluator:
         rows = [*left[::-1], centre, *right]
         t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
         if not float(np.abs(t).max(initial=0.0)) < MAX_EDGE_OFFSET_M:
-            raise MalformedError(f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line")
+            raise MalformedError(
+                f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line: at most {MAX_EDGE_OFFSET_M:g} m is possible"
+            )
         return LaneEdges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
 
     def _edges_outward(

@@ -233,7 +233,7 @@ def _band_object(
         number_attribute(repeat, "length", 0.0),
     )
     if not 0.0 < length <= 1e5:
-        raise MalformedError(f"it is repeated over {length:g} m")
+        raise MalformedError(f"the length of its <repeat> is {length:g} m: it must be above 0 and at most 100 km")
     along = np.linspace(0.0, 1.0, int(np.ceil(length / _BAND_SPACING_M)) + 1)
     t0 = number_attribute(element, "t", 0.0)
     t = np.interp(along, [0.0, 1.0], [number_attribute(repeat, "tStart", t0), number_attribute(repeat, "tEnd", t0)])

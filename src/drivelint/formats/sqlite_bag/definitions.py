@@ -75,7 +75,7 @@ def _definition_file_text(folder: Path, kind: str) -> str:
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else error
         raise UsageError(
-            f"{path}: the definition of {kind} cannot be read: {why}: copy the package's msg folder there"
+            f"{path}: the definition of {kind} cannot be read: {why}: copy the folder msg of the package {package} into {folder / package}"
         ) from error
 
 

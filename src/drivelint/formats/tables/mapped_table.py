@@ -158,7 +158,7 @@ def _column_group_numbers(path: Path, name: str, mapping: Mapping, sheet: Sheet)
             known = hint(column, sheet.names)
             raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
         if count > 1:
-            raise TraceError(f"{path}: the column {column!r} occurs {count} times")
+            raise TraceError(f"{path}: the column {column!r} occurs {count} times: rename all but one")
     return groups
 
 

@@ -281,7 +281,8 @@ def _validate_field(path: Path, name: str, spec: Field) -> None:
     if (spec.column is None) == (spec.value is None):
         raise UsageError(f"mapping {path}: {name}: give either a column or a value")
     if spec.unit is not None and spec.unit not in units:
-        raise UsageError(f"mapping {path}: {name}: unknown unit {spec.unit!r}: use {', '.join(units) or 'none'}")
+        advice = f"use {', '.join(units)}" if units else "this field takes no unit"
+        raise UsageError(f"mapping {path}: {name}: unknown unit {spec.unit!r}: {advice}")
     if name in FIELD_QUANTITIES and isinstance(spec.value, str):
         raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
 

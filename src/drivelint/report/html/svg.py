@@ -38,7 +38,7 @@ def polygon_path(points: NDArray[np.float64]) -> str:
 
 
 def percent(value: float) -> str:
-    """Return a share with at most two decimals."""
+    """Return a value in percent as text with at most two decimals: `12.5%` for 12.5."""
     return f"{value:.2f}".rstrip("0").rstrip(".") + "%"
 
 
