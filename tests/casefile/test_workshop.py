@@ -138,7 +138,7 @@ def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp
 
 @pytest.mark.slow
 def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workshop, "_CHECK_PERIOD_S", 0.01)
+    monkeypatch.setattr(workshop, "_CHANGED_FILES_CHECK_PERIOD_S", 0.01)
     rule = with_cases(measured(tmp_path), CASES)
     workshop.new_rule("mine.other", tmp_path, "invariant")
     over = Event()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from drivelint.catalogue import load_rules
-from drivelint.sql.store import column_comments, column_quantities, lifetimes
+from drivelint.sql.store import column_comments, input_quantities_by_column, lifetimes
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, brief, verdicts, write
 
 if TYPE_CHECKING:
@@ -114,7 +114,9 @@ def test_what_only_words_a_reason_is_not_used(tmp_path: Path) -> None:
 
 
 def test_declared_quantities_are_words_of_the_vocabulary() -> None:
-    assert {q for columns in column_quantities().values() for used in columns.values() for q in used} <= QUANTITIES
+    assert {
+        q for columns in input_quantities_by_column().values() for used in columns.values() for q in used
+    } <= QUANTITIES
 
 
 @pytest.mark.parametrize("rule", load_rules().values(), ids=lambda rule: rule.id)
@@ -126,7 +128,8 @@ def test_every_measure_of_a_shipped_rule_declares_what_it_is_made_of(rule: Rule)
         for table in rule.reads
         if kept.get(table) in {"drive", "part"} and "ego_id" in column_comments()[table]
         for column in column_comments()[table]
-        if column.endswith(("_mps", "_mps2", "_mps3", "_rad")) and column not in column_quantities().get(table, {})
+        if column.endswith(("_mps", "_mps2", "_mps3", "_rad"))
+        and column not in input_quantities_by_column().get(table, {})
         if "limit" not in column and table not in NOT_OF_ACTORS
     ]
     assert not bare

@@ -13,7 +13,7 @@ from drivelint.sql import macro_trees, store, syntax, word_check
 from drivelint.sql.derivations import derivations
 from drivelint.sql.word_check import CheckedQuery, check_query
 from drivelint.sql.word_scope import Relation
-from drivelint.sql.words import Vocabulary, WordColumn
+from drivelint.sql.words import ColumnVocabulary, WordColumn
 
 
 def checked(sql: str, tables: dict[str, Relation] | None = None) -> CheckedQuery:
@@ -302,5 +302,5 @@ def test_what_reads_the_tables_beside_the_rules_has_only_words_that_they_have(pa
 
 
 def test_the_nearest_word_of_a_column_with_words_besides_is_one_of_both() -> None:
-    beyond: Vocabulary = store.word_columns()["line_step"]["beyond"].vocabulary
+    beyond: ColumnVocabulary = store.word_columns()["line_step"]["beyond"].vocabulary
     assert {"opposing", "same", "shoulder"} < set(beyond.words)

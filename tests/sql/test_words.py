@@ -23,7 +23,7 @@ from drivelint.reasons.signals import SIGNALS
 from drivelint.resources import folder
 from drivelint.road import signcodes
 from drivelint.sql import store, words
-from drivelint.sql.words import Vocabulary, refuse_wrong_words, vocabularies, word_column
+from drivelint.sql.words import ColumnVocabulary, refuse_wrong_words, vocabularies, word_column
 
 SOURCES = Path(drivelint.__file__).parent
 TEXTS = {
@@ -78,7 +78,7 @@ def test_a_vocabulary_has_not_the_name_of_a_table() -> None:
 
 
 @pytest.mark.parametrize("vocabulary", vocabularies().values(), ids=lambda each: each.name)
-def test_a_vocabulary_knows_its_words_and_proposes_the_nearest_for_another(vocabulary: Vocabulary) -> None:
+def test_a_vocabulary_knows_its_words_and_proposes_the_nearest_for_another(vocabulary: ColumnVocabulary) -> None:
     assert len(set(vocabulary.words)) == len(vocabulary.words) > 1
     assert vocabulary.says
     for word in vocabulary.words:

@@ -102,7 +102,7 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> WatchOut
                 until = each.t_end_ns
     result = run.check(checked(options, folder), Silent())
     findings = result.findings.to_pylist()
-    missed = alarms.assign_findings_to_alarms(findings, result.verdicts)
+    missed = alarms.assign_findings_and_return_unassigned(findings, result.verdicts)
     _, revised = settled.late_and_revised_rows(result.verdicts)
     return WatchOutcome(alarms.alarms, missed, findings, judged, len(settled), revised)
 

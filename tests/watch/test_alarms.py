@@ -148,7 +148,7 @@ def test_a_profile_that_only_gives_advice_gives_no_alarm() -> None:
 def test_alarms_are_held_against_the_findings_of_the_whole_log() -> None:
     alarms = log()
     alarms.add_window(window(0, 10, finding(9, 10), finding(3, 4, object_id="2")), None, None)
-    missed = alarms.assign_findings_to_alarms([finding(9, 12), finding(30, 31)], window(0, 1).verdicts)
+    missed = alarms.assign_findings_and_return_unassigned([finding(9, 12), finding(30, 31)], window(0, 1).verdicts)
     assert [row["t_start_ns"] for row in missed] == [30 * NS_PER_S]
     assert [alarm.finding_ids for alarm in alarms.alarms] == [["r-1-9"], []]
 

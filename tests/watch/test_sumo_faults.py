@@ -81,7 +81,7 @@ def live(made: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float
             result = check_recording(
                 options, source.recording, None, watching, folder=folder, progress=Silent(), interruption=interruption
             )
-            watching.alarms.assign_findings_to_alarms(result.findings.to_pylist(), result.verdicts)
+            watching.alarms.assign_findings_and_return_unassigned(result.findings.to_pylist(), result.verdicts)
     finally:
         source.close()
     times = read_trace(source.recording, IngestOptions(ego="ego")).tables["actor_state"]["t_ns"].to_numpy()

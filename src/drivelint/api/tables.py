@@ -9,7 +9,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
-from drivelint.result.geometry import EARTH_GEOMETRY_COLUMN, GEOMETRIES_OF_TABLE, with_geometry
+from drivelint.result.geometry import GEOMETRIES_OF_TABLE, GEOMETRY_IN_DEGREES_COLUMN, with_geometry
 from drivelint.sql import store
 from drivelint.sql.internal_names import without_internal_names
 
@@ -103,7 +103,7 @@ class Table:
         shown, shapes = with_geometry(self._rows, self._schema_table), GEOMETRIES_OF_TABLE[self._schema_table]
         series = {
             column: gpd.GeoSeries.from_wkb(
-                shown[column].to_pylist(), crs="OGC:CRS84" if column == EARTH_GEOMETRY_COLUMN else None
+                shown[column].to_pylist(), crs="OGC:CRS84" if column == GEOMETRY_IN_DEGREES_COLUMN else None
             )
             for column in shapes
         }

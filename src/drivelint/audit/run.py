@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit import delta, listing, parts, sealed
+from drivelint.audit import delta_lake, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, open_database, remove_drives
 from drivelint.audit.driver import (
@@ -105,7 +105,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     if request.delta is not None:
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
-        delta.require_writable(request.delta, request.out, run_hash)
+        delta_lake.require_writable(request.delta, request.out, run_hash)
     was_unchanged = _create_or_check_settings(request, results, run_hash)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
@@ -299,9 +299,8 @@ def _write_delta(
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
     progress.stage("writing Delta tables", None)
-    progress.note(
-        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).sentence(dest)
-    )
+    change = delta_lake.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest)
+    progress.note(change.sentence(dest))
 
 
 def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditSummary:
@@ -315,7 +314,7 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
     run_hash = told["run_id"]
     if delta_dest is not None:
-        delta.require_writable(delta_dest, out, run_hash)
+        delta_lake.require_writable(delta_dest, out, run_hash)
     progress.stage("packing", None)
     with (
         lock_results(results, shared=False),

@@ -95,11 +95,11 @@ def expand_manifests(
     return tuple(logs), own
 
 
-def tag_warnings(names: Sequence[str]) -> Iterator[str]:
+def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
     """Yield warnings about tags whose name is a condition, or is similar to an option column."""
-    if of_conditions := name_list([f"column {name}" for name in names if name in CONDITION_VALUES]):
+    if of_conditions := name_list([f"column {name}" for name in tag_names if name in CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
-    for name in names:
+    for name in tag_names:
         text = name.casefold()
         # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
         turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]

@@ -31,7 +31,7 @@ from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
-from drivelint.result.model import LIMIT_ERROR_CODES, off_map_reason
+from drivelint.result.model import LIMIT_ERROR_CODES, map_misfit_reason
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ def receipt_fields(rows: Mapping[str, pa.Table], stable_rule_ids: pa.Array) -> d
         "map_sha256": about["map_sha256"],
         "reason": about["status_reason"],
         "lossy": about["lossy"],
-        "off_map": off_map_reason(about) is not None,
+        "off_map": map_misfit_reason(about) is not None,
         "rows_sha256": rows_sha256(rows),
         "km": about["km"],
         "duration_s": about["duration_s"] or 0.0,

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     Say = Callable[[str], None]
 
-_CHECK_PERIOD_S: Final = 0.5
+_CHANGED_FILES_CHECK_PERIOD_S: Final = 0.5
 """The time between two checks of `repeat_tests_on_changes` for changed files."""
 
 
@@ -99,7 +99,7 @@ def repeat_tests_on_changes(
     """Test the rules, then, until `stop` is set, each rule whose file or cases change; return the code of the last test."""
     code, before = test(root, rule_globs, print_line), _change_times(root)
     print_line("waiting for changes; press Ctrl-C to end")
-    while not stop.wait(_CHECK_PERIOD_S):
+    while not stop.wait(_CHANGED_FILES_CHECK_PERIOD_S):
         now = _change_times(root)
         changed = {_rule_file_of(file) for file, _ in now.items() ^ before.items()}
         before = now

@@ -101,7 +101,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, chec
 
 def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozenset[str]:
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
-    declared = store.column_quantities()
+    declared = store.input_quantities_by_column()
     # an event table named in the header provides all its columns: only columns that other sections name count
     named = {
         name

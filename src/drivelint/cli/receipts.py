@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.gate import GateInputs
     from drivelint.result.model import Result
 
-_OPTIONS_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
+_CHECK_OPTIONS_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
 _FILES_WITHOUT_OPTION: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
@@ -88,7 +88,7 @@ class StoredRunOfCheck:
             and cache_folder() is not None
             and not self._contains_outputs(self._named)
         ):
-            counted = {name: value for name, value in options.items() if name not in _OPTIONS_WITHOUT_EFFECT}
+            counted = {name: value for name, value in options.items() if name not in _CHECK_OPTIONS_WITHOUT_EFFECT}
             places = {
                 name: os.path.realpath(options[name]) for name in ("out", "baseline") if options[name] is not None
             }

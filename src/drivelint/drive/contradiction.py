@@ -58,7 +58,7 @@ SIDEWAYS_MPS: Final = 3.0
 HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
 MOST_TURN_IN_SLIDE_RAD: Final = np.deg2rad(45.0)
 """No heading changes by more than 90 degrees between two samples. In a slide, the limit is 45 degrees: 450 degrees/s at 10 Hz."""
-DIRECTED_CLASSES: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
+CLASSES_MOVING_ALONG_HEADING: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Classes of actors whose heading is the direction of their motion (None: unknown class). Pedestrians and animals can face any direction;
 objects have no front."""
 STRETCH_S: Final = 0.5
@@ -289,10 +289,10 @@ def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tupl
     """
     n, yaw, (vx, vy) = len(states), states.numbers["yaw_rad"], states.velocity
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
-    long_kind = np.array([kinds.get(name) in DIRECTED_CLASSES for name in states.ids], np.bool_)[states.actor]
+    in_line = np.array([kinds.get(name) in CLASSES_MOVING_ALONG_HEADING for name in states.ids], np.bool_)[states.actor]
     speed = np.hypot(vx, vy)
     off = np.abs(wrap_angles(yaw - np.arctan2(vy, vx)))
-    moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
+    moving = in_line & (speed > MOVING_MPS) & np.isfinite(yaw)
     backwards = moving & (off > BACKWARDS_RAD)
     across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
     turn = np.where(step.same_actor, np.abs(wrap_angles(np.diff(yaw))), 0.0)

@@ -191,8 +191,8 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     return replace(trace, tables={**trace.tables, "quality": ordered})
 
 
-def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Trace:
-    """Return the trace with the map's word for this condition, if neither the user nor the log states the condition."""
+def with_drive_condition_from_map(trace: Trace, condition: str, word: str | None) -> Trace:
+    """Return the trace with the map's word for this condition of the drive, if neither the user nor the log states the condition."""
     rows = trace.tables["drive_condition"]
     if word is None or condition in rows["condition"].to_pylist():
         return trace

@@ -21,7 +21,7 @@ import numpy as np
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats
-from drivelint.drive.finish import with_condition_of_map, with_quality_finding
+from drivelint.drive.finish import with_drive_condition_from_map, with_quality_finding
 from drivelint.drive.trace import NOT_IN_FOLDER_CHECK, QualityFinding
 from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST_FILE, MapFolder
@@ -101,7 +101,7 @@ class MapLibrary:
             headings = self._lane_headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load_map(source, trace, voted)
-        return environment, with_condition_of_map(trace, "nation", environment.nation)
+        return environment, with_drive_condition_from_map(trace, "nation", environment.nation)
 
     def _moved_into_map_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
         """Return the drive in the map's frame, and the evidence that it is at another place, or None.

@@ -25,6 +25,9 @@ _TOP, _BOTTOM = 8.0, 97.0
 """Top and bottom of the drawn area in percent of a chart's height; that height depends on the free space on the page."""
 _FROM_S, _TO_S = -15.0, 7.0
 _LEAST_HOLE_STEPS: Final = 3
+"""A line is interrupted where two values are more than this many steps apart."""
+_LEAST_POINTS_OF_VISIBLE_LINE: Final = 3
+"""A line with fewer points is drawn as dots."""
 _MOST_REQUIRED_LINES: Final = 3
 """A chart of gaps has at most this many lines of required gaps."""
 
@@ -148,7 +151,7 @@ def _dots_of_short_line(line: _ChartLine, x: Axis, y: Axis) -> list[tuple[str, s
         for at, v in zip(line.t, line.values, strict=True)
         if math.isfinite(v)
     ]
-    return points if len(points) < _LEAST_HOLE_STEPS else []
+    return points if len(points) < _LEAST_POINTS_OF_VISIBLE_LINE else []
 
 
 def _label_positions(line: _ChartLine, x: Axis, y: Axis, line_no: int) -> list[tuple[str, str, bool]]:

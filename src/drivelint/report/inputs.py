@@ -12,7 +12,12 @@ from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX, signal_name
 from drivelint.report.law import law_words
 from drivelint.result import counts
-from drivelint.result.model import MAP_MISFIT_CODES, ego_absence_texts, gating_verdicts_lacking_signal, off_map_reason
+from drivelint.result.model import (
+    MAP_MISFIT_CODES,
+    ego_absence_texts,
+    gating_verdicts_lacking_signal,
+    map_misfit_reason,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -60,7 +65,7 @@ def _map_note(drives: Sequence[Row]) -> InputNote:
     on_map = [drive for drive in drives if drive["map_name"] is not None]
     if not on_map:
         return InputNote("map", "none", is_warning=bool(drives))
-    reasons = [reason for drive in on_map if (reason := off_map_reason(drive)) is not None]
+    reasons = [reason for drive in on_map if (reason := map_misfit_reason(drive)) is not None]
     n = plural(len(on_map), "drive")
     words = f"{name_list(sorted({drive['map_name'] for drive in on_map}), _MAX_LISTED_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
     off_egos, egos = sum(map(_n_egos_off_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)

@@ -19,7 +19,7 @@ from drivelint.result.model import (
     failures_without_finding,
     gating_unfixed_findings,
     gating_unknowns,
-    off_map_reason,
+    map_misfit_reason,
     why_too_little_decided,
 )
 from drivelint.result.text import rule_name, verdict_or_finding_line, with_count
@@ -85,7 +85,7 @@ def _cases_of_drive_problems(drive: Row) -> Iterator[Case]:
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
         yield Case("the log is complete", "error", "lossy", ["parts of the log were lost", *ego_absence_texts(drive)])
-    if (reason := off_map_reason(drive)) is not None:
+    if (reason := map_misfit_reason(drive)) is not None:
         yield Case("the map fits the drive", "error", "map", [reason])
 
 

@@ -29,7 +29,7 @@ from drivelint.report.outcome import (
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_time_words
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
-from drivelint.result.model import exit_status, gating_verdicts_lacking_signal, off_map_reason
+from drivelint.result.model import exit_status, gating_verdicts_lacking_signal, map_misfit_reason
 from drivelint.result.text import breach_title, closing_words, ego_name, number, seconds, tolerance
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ def _drives_table(
 
 
 def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
-    if off_map_reason(drive) is not None:
+    if map_misfit_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
     if verdicts["pass"]:
         return Text("no finding", "dim")

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     Geometries = NDArray[np.object_]
 
-MAP_GEOMETRY_COLUMN: Final = "geom"
-EARTH_GEOMETRY_COLUMN: Final = "geom_lonlat"
+GEOMETRY_IN_METRES_COLUMN: Final = "geom"
+GEOMETRY_IN_DEGREES_COLUMN: Final = "geom_lonlat"
 _LEAST_RING_POINTS: Final = 4  # the least number: a triangle with its first point repeated
 
 
@@ -52,7 +52,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
         field = pa.field(column, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
         rows = rows.append_column(field, pa.array(wkb, pa.binary(), from_pandas=True))
         # no key "crs" means longitude and latitude; null means that the reference system is unknown
-        frame = {} if column == EARTH_GEOMETRY_COLUMN else {"crs": None}
+        frame = {} if column == GEOMETRY_IN_DEGREES_COLUMN else {"crs": None}
         about[column] = {"encoding": "WKB", "geometry_types": [shape.kind], **frame}
     geo = {"version": "1.1.0", "primary_column": next(iter(shapes)), "columns": about}
     return rows.replace_schema_metadata({**metadata, b"geo": json.dumps(geo, sort_keys=True).encode()})
@@ -61,7 +61,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 def without_geometry(rows: pa.Table) -> pa.Table:
     """Return the rows without the columns that `with_geometry` added."""
     return rows.drop_columns(
-        [name for name in (MAP_GEOMETRY_COLUMN, EARTH_GEOMETRY_COLUMN) if name in rows.column_names]
+        [name for name in (GEOMETRY_IN_METRES_COLUMN, GEOMETRY_IN_DEGREES_COLUMN) if name in rows.column_names]
     )
 
 
@@ -180,20 +180,20 @@ def _row_of_points(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
 
 GEOMETRIES_OF_TABLE: Final[Mapping[str, Mapping[str, GeometryColumn]]] = {
     "finding": {
-        MAP_GEOMETRY_COLUMN: GeometryColumn("Point", "the ego at the worst step", _points_on_map),
-        EARTH_GEOMETRY_COLUMN: GeometryColumn(
+        GEOMETRY_IN_METRES_COLUMN: GeometryColumn("Point", "the ego at the worst step", _points_on_map),
+        GEOMETRY_IN_DEGREES_COLUMN: GeometryColumn(
             "Point", "the same, in degrees of longitude and latitude (WGS 84)", _points_on_earth
         ),
     },
-    "drive": {EARTH_GEOMETRY_COLUMN: GeometryColumn("Point", "lon and lat", _points_on_earth)},
+    "drive": {GEOMETRY_IN_DEGREES_COLUMN: GeometryColumn("Point", "lon and lat", _points_on_earth)},
     "scene": {
-        MAP_GEOMETRY_COLUMN: GeometryColumn(
+        GEOMETRY_IN_METRES_COLUMN: GeometryColumn(
             "MultiPolygon", "the ground under the boxes of the actors at the moment", _actor_box_areas
         )
     },
-    "lane_shape": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the lane between its bounds", _lane_polygons)},
-    "danger_space": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the danger space", _danger_space_polygons)},
-    "track": {MAP_GEOMETRY_COLUMN: GeometryColumn("LineString", "the way", _track_lines)},
-    "course": {MAP_GEOMETRY_COLUMN: GeometryColumn("MultiPoint", "the ego at the judged steps", _judged_points)},
+    "lane_shape": {GEOMETRY_IN_METRES_COLUMN: GeometryColumn("Polygon", "the lane between its bounds", _lane_polygons)},
+    "danger_space": {GEOMETRY_IN_METRES_COLUMN: GeometryColumn("Polygon", "the danger space", _danger_space_polygons)},
+    "track": {GEOMETRY_IN_METRES_COLUMN: GeometryColumn("LineString", "the way", _track_lines)},
+    "course": {GEOMETRY_IN_METRES_COLUMN: GeometryColumn("MultiPoint", "the ego at the judged steps", _judged_points)},
 }
 """Table of the schema -> column in the file -> its geometry. Viewers show the first column."""

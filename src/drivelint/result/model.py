@@ -144,7 +144,7 @@ def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{_error_phrase(limited)}: exceeded its limits: {_rule_ids_text(limited)}"
         )
-    off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
+    off_map = [reason for drive in result.drives.to_pylist() if (reason := map_misfit_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
@@ -279,7 +279,7 @@ def ego_absence_texts(drive: Row) -> list[str]:
     return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT_CHECK]
 
 
-def off_map_reason(drive: Row) -> str | None:
+def map_misfit_reason(drive: Row) -> str | None:
     """Return why the map does not fit a drive, for its first ego; None if the map fits an ego, the fit is unknown, or there is no map.
 
     `drive`: a row of the table `drive`.

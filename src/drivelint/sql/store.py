@@ -252,7 +252,7 @@ def word_columns() -> dict[str, dict[str, words.WordColumn]]:
 
 
 @cache
-def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
+def input_quantities_by_column() -> dict[str, dict[str, frozenset[str]]]:
     """Return table -> column -> the quantities of actors from which it is computed, if its comment ends in a list of quantities."""
     return {
         table: {

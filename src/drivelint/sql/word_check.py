@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.sql import store, syntax, word_types
 from drivelint.sql.macro_trees import macro, macro_texts
-from drivelint.sql.word_functions import compared_types, type_of_call
+from drivelint.sql.word_functions import compared_words, possible_words_of_call
 from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, union_of_relations, with_column_names
 from drivelint.sql.word_types import (
     NULL,
@@ -22,11 +22,11 @@ from drivelint.sql.word_types import (
     Parameter,
     PossibleWords,
     StructOf,
-    Type,
+    WordType,
     WrongWord,
     as_indirect,
-    type_of_item,
-    type_of_member,
+    possible_words_of_item,
+    possible_words_of_member,
     union,
 )
 
@@ -64,7 +64,7 @@ def wrong_words_in_columns(table: str, relation: Relation) -> list[WrongWord]:
     known = store.word_columns()[table]
     found = []
     for name, kind in relation.columns:
-        column = word_types.type_of_column(known[name]) if name in known else None
+        column = word_types.possible_words_of_column(known[name]) if name in known else None
         if isinstance(column, PossibleWords) and isinstance(kind, PossibleWords):
             found += [
                 WrongWord(word, place.offset, column)
@@ -77,7 +77,7 @@ def wrong_words_in_columns(table: str, relation: Relation) -> list[WrongWord]:
 def check_macro(name: str) -> list[WrongWord]:
     """Return the wrong words in a macro; a parameter may have the values of the columns with its name."""
     walker = _Walker(_relation_by_table())
-    walker.type_of_macro_call(name, None)
+    walker.possible_words_of_macro_call(name, None)
     return walker.wrong
 
 
@@ -87,7 +87,7 @@ def _relation_by_table() -> dict[str, Relation]:
     return {
         table: Relation(
             [
-                (name, word_types.type_of_column(columns[table][name]) if name in columns[table] else None)
+                (name, word_types.possible_words_of_column(columns[table][name]) if name in columns[table] else None)
                 for name in names
             ]
         )
@@ -96,12 +96,12 @@ def _relation_by_table() -> dict[str, Relation]:
 
 
 @cache
-def _type_by_column() -> dict[str, Type]:
+def _possible_words_by_column() -> dict[str, WordType]:
     """Return column -> its possible values, for columns with the same values in every table that has them."""
-    found: dict[str, list[Type]] = {}
+    found: dict[str, list[WordType]] = {}
     for columns in store.word_columns().values():
         for name, column in columns.items():
-            found.setdefault(name, []).append(word_types.type_of_column(column))
+            found.setdefault(name, []).append(word_types.possible_words_of_column(column))
     return {name: kinds[0] for name, kinds in found.items() if all(kind == kinds[0] for kind in kinds)}
 
 
@@ -160,7 +160,7 @@ class _Walker:
     def _relation_of_select(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
         scope = Scope(outer, ctes)
         scope.sources = self._sources_of_from_clause(node["from_table"], scope)
-        columns: list[tuple[str, Type]] = []
+        columns: list[tuple[str, WordType]] = []
         complete = True
         for item in node["select_list"]:
             if item["class"] == "STAR":
@@ -168,7 +168,7 @@ class _Walker:
                 columns += star.columns
                 complete = complete and star.complete
                 continue
-            kind = self.type_of(item, scope)
+            kind = self.words_of(item, scope)
             if item.get("function_name", "").lower() == "unnest" and isinstance(kind, StructOf) and _is_recursive(item):
                 columns += kind.fields.items()
                 continue
@@ -192,7 +192,7 @@ class _Walker:
             return Relation(list(kind.fields.items())) if isinstance(kind, StructOf) else UNKNOWN
         dropped = {_excluded_column_name(name) for name in item.get("exclude_list") or ()}
         replaced = {
-            entry["key"].lower(): as_indirect(self.type_of(entry["value"], scope))
+            entry["key"].lower(): as_indirect(self.words_of(entry["value"], scope))
             for entry in item.get("replace_list") or ()
         }
         columns = [
@@ -216,13 +216,13 @@ class _Walker:
             case "SUBQUERY":
                 relation = self.relation_of_query(node["subquery"]["node"], scope.ctes, scope)
             case "EXPRESSION_LIST":
-                rows = [[self.type_of(value, scope) for value in row] for row in node["values"]]
+                rows = [[self.words_of(value, scope) for value in row] for row in node["values"]]
                 relation = Relation(
                     [(f"col{n}", as_indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))]
                 )
             case "TABLE_FUNCTION":
                 call = node["function"]
-                kind = self.type_of(call, scope)
+                kind = self.words_of(call, scope)
                 known = call["function_name"].lower() in {"unnest", "range", "generate_series"}
                 relation = Relation([(call["function_name"].lower(), as_indirect(kind))], complete=known)
             case _:
@@ -242,11 +242,11 @@ class _Walker:
 
     # ---- expressions
 
-    def type_of(self, node: Node, scope: Scope) -> Type:
+    def words_of(self, node: Node, scope: Scope) -> WordType:
         """Return the possible values of an expression."""
         of_class = getattr(self, f"_{node['class'].lower()}", None)
         if of_class is not None:
-            kind: Type = of_class(node, scope)
+            kind: WordType = of_class(node, scope)
             return kind
         self._check_inner_expressions([value for key, value in node.items() if key != "class"], scope)
         return None
@@ -254,13 +254,13 @@ class _Walker:
     def _check_inner_expressions(self, part: Any, scope: Scope) -> None:
         """Check all expressions in a part of a tree."""
         if isinstance(part, dict) and "class" in part:
-            self.type_of(part, scope)
+            self.words_of(part, scope)
         elif isinstance(part, dict | list):
             for inner in part.values() if isinstance(part, dict) else part:
                 if isinstance(inner, dict | list):
                     self._check_inner_expressions(inner, scope)
 
-    def _constant(self, node: Node, _scope: Scope) -> Type:
+    def _constant(self, node: Node, _scope: Scope) -> WordType:
         value = node["value"]
         if value["is_null"]:
             return NULL
@@ -270,31 +270,33 @@ class _Walker:
         return PossibleWords(literals={value["value"]: place}, direct=True)
 
     @staticmethod
-    def _column_ref(node: Node, scope: Scope) -> Type:
+    def _column_ref(node: Node, scope: Scope) -> WordType:
         return scope.lookup([name.lower() for name in node["column_names"]])
 
     @staticmethod
-    def _parameter(node: Node, _scope: Scope) -> Type:
+    def _parameter(node: Node, _scope: Scope) -> WordType:
         return Parameter(node["identifier"])
 
-    def _case(self, node: Node, scope: Scope) -> Type:
+    def _case(self, node: Node, scope: Scope) -> WordType:
         checks = node["case_checks"]
         for each in checks:
-            self.type_of(each["when_expr"], scope)
-        return union(self.type_of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
+            self.words_of(each["when_expr"], scope)
+        return union(
+            self.words_of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"])
+        )
 
-    def _cast(self, node: Node, scope: Scope) -> Type:
-        kind = self.type_of(node["child"], scope)
+    def _cast(self, node: Node, scope: Scope) -> WordType:
+        kind = self.words_of(node["child"], scope)
         return kind if node["cast_type"]["id"] == "VARCHAR" or kind == NULL else None
 
-    def _comparison(self, node: Node, scope: Scope) -> Type:
-        left, right = self.type_of(node["left"], scope), self.type_of(node["right"], scope)
+    def _comparison(self, node: Node, scope: Scope) -> WordType:
+        left, right = self.words_of(node["left"], scope), self.words_of(node["right"], scope)
         if node["type"] in _COMPARISONS:
             self._check_comparison(left, right)
         return None
 
-    def _operator(self, node: Node, scope: Scope) -> Type:
-        kinds = [self.type_of(child, scope) for child in node["children"]]
+    def _operator(self, node: Node, scope: Scope) -> WordType:
+        kinds = [self.words_of(child, scope) for child in node["children"]]
         match node["type"]:
             case "COMPARE_IN" | "COMPARE_NOT_IN":
                 for kind in kinds[1:]:
@@ -302,65 +304,69 @@ class _Walker:
             case "OPERATOR_COALESCE":
                 return union(kinds)
             case "ARRAY_EXTRACT" | "STRUCT_EXTRACT":
-                return type_of_member(*kinds)
+                return possible_words_of_member(*kinds)
             case "ARRAY_SLICE":
                 return kinds[0]
         return None
 
-    def _window(self, node: Node, scope: Scope) -> Type:
+    def _window(self, node: Node, scope: Scope) -> WordType:
         return self._function(node, scope)
 
-    def _function(self, node: Node, scope: Scope) -> Type:
+    def _function(self, node: Node, scope: Scope) -> WordType:
         name = node["function_name"].lower()
         children = node["children"]
         if name in _FUNCTIONS_WITH_LAMBDA and children[1]["class"] == "LAMBDA":
-            return self._type_of_list_lambda(name, node, scope)
-        kinds = [self.type_of(child, scope) for child in children]
+            return self._possible_words_of_list_lambda(name, node, scope)
+        kinds = [self.words_of(child, scope) for child in children]
         self._check_inner_expressions(
             {key: value for key, value in node.items() if key not in {"children", "class"}}, scope
         )
         if name in macro_texts():
-            return self.type_of_macro_call(name, kinds, node)
+            return self.possible_words_of_macro_call(name, kinds, node)
         if name == "struct_pack":
             return StructOf(
                 {child["alias"].lower(): as_indirect(kind) for child, kind in zip(children, kinds, strict=True)}
             )
-        if pair := compared_types(name, kinds):
+        if pair := compared_words(name, kinds):
             self._check_comparison(*pair)
         if len(kinds) == 2:
             self._collect_wrong_words(word_types.wrong_patterns(name, *kinds))
-        return type_of_call(name, kinds)
+        return possible_words_of_call(name, kinds)
 
-    def _type_of_list_lambda(self, name: str, node: Node, scope: Scope) -> Type:
+    def _possible_words_of_list_lambda(self, name: str, node: Node, scope: Scope) -> WordType:
         """Return the possible values of a list function with a lambda, such as `list_filter`."""
-        items, function = self.type_of(node["children"][0], scope), node["children"][1]
+        items, function = self.words_of(node["children"][0], scope), node["children"][1]
         left = function["lhs"]
         names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
-        bound = {**dict.fromkeys(names), names[0]: as_indirect(type_of_item(items))}
-        value = self.type_of(function["expr"], Scope(scope, scope.ctes, bound=bound))
+        bound = {**dict.fromkeys(names), names[0]: as_indirect(possible_words_of_item(items))}
+        value = self.words_of(function["expr"], Scope(scope, scope.ctes, bound=bound))
         return items if name == "list_filter" else ListOf(value)
 
-    def type_of_macro_call(self, name: str, kinds: Sequence[Type] | None, call: Node | None = None) -> Type:
+    def possible_words_of_macro_call(
+        self, name: str, kinds: Sequence[WordType] | None, call: Node | None = None
+    ) -> WordType:
         """Return the possible values of a macro call. `kinds`: possible values of the arguments; None: any values."""
         called = macro(name)
         if called is None or (kinds is not None and len(kinds) != len(called.parameters)):
             return None
         if kinds is not None and all(kind is None for kind in kinds):
-            return _type_of_macro(name)
+            return _possible_words_of_macro(name)
         given = zip(called.parameters, kinds or [None] * len(called.parameters), strict=True)
-        bound = {parameter: _type_by_column().get(parameter) if kind is None else kind for parameter, kind in given}
+        bound = {
+            parameter: _possible_words_by_column().get(parameter) if kind is None else kind for parameter, kind in given
+        }
         if not self._depth:
             self._call = None if call is None else syntax.offset_of(call)
         self._depth += 1
-        kind = self.type_of(called.value, Scope(bound=bound))
+        kind = self.words_of(called.value, Scope(bound=bound))
         self._depth -= 1
         return as_indirect(kind)
 
-    def _subquery(self, node: Node, scope: Scope) -> Type:
+    def _subquery(self, node: Node, scope: Scope) -> WordType:
         relation = self.relation_of_query(node["subquery"]["node"], scope.ctes, scope)
         first = relation.columns[0][1] if relation.columns else None
         if node["subquery_type"] == "ANY":
-            kind = self.type_of(node["child"], scope)
+            kind = self.words_of(node["child"], scope)
             if node["comparison_type"] in _COMPARISONS:  # the literals in the list of ANY are written at this place
                 self._check_comparison(
                     kind, replace(first, direct=not first.vocabularies) if isinstance(first, PossibleWords) else first
@@ -368,7 +374,7 @@ class _Walker:
             return None
         return first if node["subquery_type"] == "SCALAR" else None
 
-    def _check_comparison(self, left: Type, right: Type) -> None:
+    def _check_comparison(self, left: WordType, right: WordType) -> None:
         for one, other in ((left, right), (right, left)):
             if isinstance(one, Parameter) and isinstance(other, PossibleWords) and not other.direct:
                 self.parameters.setdefault(one.name, []).append(other)
@@ -380,9 +386,9 @@ class _Walker:
 
 
 @cache
-def _type_of_macro(name: str) -> Type:
+def _possible_words_of_macro(name: str) -> WordType:
     """Return the possible values of a macro for any arguments."""
-    return _Walker(_relation_by_table()).type_of_macro_call(name, None)
+    return _Walker(_relation_by_table()).possible_words_of_macro_call(name, None)
 
 
 def _is_recursive(unnest: Node) -> bool:

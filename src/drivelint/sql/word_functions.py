@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.sql.word_types import ListOf, Type, concatenation, type_of_item, type_of_member, union
+from drivelint.sql.word_types import (
+    ListOf,
+    WordType,
+    concatenation,
+    possible_words_of_item,
+    possible_words_of_member,
+    union,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    Kinds = Sequence[Type]
+    Kinds = Sequence[WordType]
 
 _FUNCTIONS_OF_FIRST_ARGUMENT: Final = (
     *(
@@ -43,27 +50,27 @@ _MEMBERSHIP_FUNCTIONS: Final = frozenset({"contains", "list_contains", "list_has
 _SET_FUNCTIONS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list_intersect"})
 
 
-def _type_of_concatenation(kinds: Kinds) -> Type:
+def _possible_words_of_concatenation(kinds: Kinds) -> WordType:
     return union(kinds) if any(isinstance(kind, ListOf) for kind in kinds) else concatenation(kinds)
 
 
-_TYPE_OF_CALL_BY_FUNCTION: Final[Mapping[str, Callable[[Kinds], Type]]] = {
+_POSSIBLE_WORDS_BY_FUNCTION: Final[Mapping[str, Callable[[Kinds], WordType]]] = {
     **dict.fromkeys(_FUNCTIONS_OF_FIRST_ARGUMENT, lambda kinds: kinds[0]),
     **dict.fromkeys(("lag", "lead"), lambda kinds: union([kinds[0], *kinds[2:3]])),
     **dict.fromkeys(("coalesce", "greatest", "least", "ifnull"), union),
     **dict.fromkeys(("list", "array_agg", "list_value", "array_value"), lambda kinds: ListOf(union(kinds))),
-    **dict.fromkeys(_ITEM_FUNCTIONS, lambda kinds: type_of_item(kinds[0])),
-    **dict.fromkeys(("||", "concat", "list_concat"), _type_of_concatenation),
-    **dict.fromkeys(("struct_extract", "array_extract"), lambda kinds: type_of_member(*kinds)),
+    **dict.fromkeys(_ITEM_FUNCTIONS, lambda kinds: possible_words_of_item(kinds[0])),
+    **dict.fromkeys(("||", "concat", "list_concat"), _possible_words_of_concatenation),
+    **dict.fromkeys(("struct_extract", "array_extract"), lambda kinds: possible_words_of_member(*kinds)),
 }
 
 
-def type_of_call(function: str, kinds: Kinds) -> Type:
+def possible_words_of_call(function: str, kinds: Kinds) -> WordType:
     """Return the possible values of a function for arguments with the possible values `kinds`; None: unknown."""
-    return _TYPE_OF_CALL_BY_FUNCTION[function](kinds) if function in _TYPE_OF_CALL_BY_FUNCTION and kinds else None
+    return _POSSIBLE_WORDS_BY_FUNCTION[function](kinds) if function in _POSSIBLE_WORDS_BY_FUNCTION and kinds else None
 
 
-def compared_types(function: str, kinds: Kinds) -> tuple[Type, Type] | None:
+def compared_words(function: str, kinds: Kinds) -> tuple[WordType, WordType] | None:
     """Return the two values that a function compares; None if it compares none.
 
     List functions compare an item of the list with a value, or with an item of a second list.
@@ -72,7 +79,7 @@ def compared_types(function: str, kinds: Kinds) -> tuple[Type, Type] | None:
         return None
     first, second = kinds
     if function in _MEMBERSHIP_FUNCTIONS:
-        return type_of_item(first), second
+        return possible_words_of_item(first), second
     if function in _SET_FUNCTIONS:
-        return type_of_item(first), type_of_item(second)
+        return possible_words_of_item(first), possible_words_of_item(second)
     return (first, second) if function == "nullif" else None

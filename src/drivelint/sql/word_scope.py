@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.sql.word_types import Type, type_of_field, union
+from drivelint.sql.word_types import WordType, possible_words_of_field, union
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Relation(NamedTuple):
     """The columns of a table or query in order, with names in lower case. `complete`: it has no other columns."""
 
-    columns: Sequence[tuple[str, Type]]
+    columns: Sequence[tuple[str, WordType]]
     complete: bool = True
 
 
@@ -28,7 +28,7 @@ class Source:
         self.name, self.relation, self.hidden = name, relation, hidden
 
     @cached_property
-    def type_by_column(self) -> dict[str, Type]:
+    def possible_words_by_column(self) -> dict[str, WordType]:
         """Column -> its possible values; if two columns have the same name, the first one counts."""
         return dict(reversed(self.relation.columns))
 
@@ -45,24 +45,24 @@ class Scope:
         outer: Scope | None = None,
         ctes: Mapping[str, Relation] | None = None,
         sources: Sequence[Source] = (),
-        bound: Mapping[str, Type] | None = None,
+        bound: Mapping[str, WordType] | None = None,
     ) -> None:
         self.outer, self.ctes, self.sources, self.bound = outer, ctes or {}, sources, bound or {}
-        self.aliases: dict[str, Type] = {}
+        self.aliases: dict[str, WordType] = {}
 
-    def lookup(self, names: Sequence[str]) -> Type:
+    def lookup(self, names: Sequence[str]) -> WordType:
         """Return the possible values of a column. `names`: its parts in lower case: [source], column, [fields]."""
         first, *rest = names
         if first in self.bound:
-            return type_of_field(self.bound[first], rest)
+            return possible_words_of_field(self.bound[first], rest)
         for source in self.sources:
-            if rest and source.name == first and rest[0] in source.type_by_column:
-                return type_of_field(source.type_by_column[rest[0]], rest[1:])
+            if rest and source.name == first and rest[0] in source.possible_words_by_column:
+                return possible_words_of_field(source.possible_words_by_column[rest[0]], rest[1:])
         for source in self.sources:
-            if first in source.type_by_column:
-                return type_of_field(source.type_by_column[first], rest)
+            if first in source.possible_words_by_column:
+                return possible_words_of_field(source.possible_words_by_column[first], rest)
         if first in self.aliases:
-            return type_of_field(self.aliases[first], rest)
+            return possible_words_of_field(self.aliases[first], rest)
         if self.outer is None or not all(source.relation.complete for source in self.sources):
             return None
         return self.outer.lookup(names)
@@ -81,8 +81,8 @@ def union_of_relations(left: Relation, right: Relation, *, by_name: bool) -> Rel
     if by_name:
         first, second = dict(left.columns), dict(right.columns)
         names = dict.fromkeys([*first, *second])
-        type_by_column = {name: [each[name] for each in (first, second) if name in each] for name in names}
-        return Relation([(name, union(type_by_column[name])) for name in names], complete)
+        possible_words_by_column = {name: [each[name] for each in (first, second) if name in each] for name in names}
+        return Relation([(name, union(possible_words_by_column[name])) for name in names], complete)
     if not complete:
         return Relation([(name, None) for name, _ in left.columns], complete=False)
     pairs = zip(left.columns, right.columns, strict=False)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.sql.words import Vocabulary, nearest_word_hint
+from drivelint.sql.words import ColumnVocabulary, nearest_word_hint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -38,7 +38,7 @@ class PossibleWords:
     `direct`: the expression itself consists of literals only.
     """
 
-    vocabularies: frozenset[Vocabulary] = frozenset()
+    vocabularies: frozenset[ColumnVocabulary] = frozenset()
     literals: Mapping[str, LiteralPlace] = field(default_factory=dict)
     direct: bool = False
 
@@ -60,16 +60,16 @@ class PossibleWords:
 
 @dataclass(frozen=True)
 class ListOf:
-    """A list with items of this type."""
+    """A list with items of these possible values."""
 
-    item: Type
+    item: WordType
 
 
 @dataclass(frozen=True)
 class StructOf:
-    """A STRUCT with fields of these types."""
+    """A STRUCT with fields of these possible values."""
 
-    fields: Mapping[str, Type]
+    fields: Mapping[str, WordType]
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Parameter:
     name: str
 
 
-Type = PossibleWords | ListOf | StructOf | Parameter | None
+WordType = PossibleWords | ListOf | StructOf | Parameter | None
 NULL = PossibleWords(direct=True)
 
 
@@ -101,19 +101,19 @@ class WrongWord(NamedTuple):
         return f"{self.word!r} {what}; {nearest_word_hint(self.word.strip('%'), self.against.possible_words)}"
 
 
-def type_of_column(column: WordColumn) -> Type:
+def possible_words_of_column(column: WordColumn) -> WordType:
     """Return the possible values of a table's column."""
-    item: Type = PossibleWords(frozenset({column.vocabulary}))
+    item: WordType = PossibleWords(frozenset({column.vocabulary}))
     item = StructOf({column.field: item}) if column.field else item
     return ListOf(item) if column.is_list else item
 
 
-def as_indirect(kind: Type) -> Type:
+def as_indirect(kind: WordType) -> WordType:
     """Return the type without `direct`: for a value that is read by a column's name, or returned by a macro."""
     return replace(kind, direct=False) if isinstance(kind, PossibleWords) else kind
 
 
-def union(kinds: Iterable[Type]) -> Type:
+def union(kinds: Iterable[WordType]) -> WordType:
     """Return the union of possible values; NULL adds nothing."""
     parts = [kind for kind in kinds if not (isinstance(kind, PossibleWords) and kind.is_null)]
     if len(parts) < 2:
@@ -123,7 +123,7 @@ def union(kinds: Iterable[Type]) -> Type:
     structs = [part for part in parts if isinstance(part, StructOf)]
     if len(words) == len(parts):
         literals = {word: place for part in reversed(words) for word, place in part.literals.items()}
-        known = frozenset[Vocabulary]().union(*(part.vocabularies for part in words))
+        known = frozenset[ColumnVocabulary]().union(*(part.vocabularies for part in words))
         return PossibleWords(known, literals, all(part.direct for part in words))
     if len(lists) == len(parts):
         return ListOf(union(part.item for part in lists))
@@ -133,7 +133,7 @@ def union(kinds: Iterable[Type]) -> Type:
     return None
 
 
-def concatenation(parts: Iterable[Type]) -> Type:
+def concatenation(parts: Iterable[WordType]) -> WordType:
     """Return all concatenations of the possible values of `parts`; None if unknown or too many."""
     texts: list[list[tuple[str, LiteralPlace]]] = []
     for part in parts:
@@ -146,24 +146,28 @@ def concatenation(parts: Iterable[Type]) -> Type:
     return PossibleWords(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
 
 
-def type_of_field(kind: Type, names: Iterable[str]) -> Type:
-    """Return the type of a field of a STRUCT. `names`: the field, then fields within it."""
+def possible_words_of_field(kind: WordType, names: Iterable[str]) -> WordType:
+    """Return the possible values of a field of a STRUCT. `names`: the field, then fields within it."""
     for name in names:
         kind = kind.fields.get(name) if isinstance(kind, StructOf) else None
     return kind
 
 
-def type_of_item(kind: Type) -> Type:
+def possible_words_of_item(kind: WordType) -> WordType:
     """Return the possible values of an item of a list."""
     return kind.item if isinstance(kind, ListOf) else None
 
 
-def type_of_member(kind: Type, key: Type) -> Type:
+def possible_words_of_member(kind: WordType, key: WordType) -> WordType:
     """Return the possible values of `kind[key]`: an item of a list, or a field of a STRUCT."""
-    return type_of_field(kind, map(str.lower, key.literals)) if isinstance(key, PossibleWords) else type_of_item(kind)
+    return (
+        possible_words_of_field(kind, map(str.lower, key.literals))
+        if isinstance(key, PossibleWords)
+        else possible_words_of_item(kind)
+    )
 
 
-def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
+def wrong_words(left: WordType, right: WordType) -> Iterator[WrongWord]:
     """Yield the literals on one side of a comparison that the other side can never be.
 
     A literal within a macro may only contradict a vocabulary, not other literals: the arguments of one call may have fewer values than
@@ -198,7 +202,7 @@ _PATTERN_TEST_BY_FUNCTION: Final[Mapping[str, Callable[[str, str], bool]]] = {
 """Function of DuckDB -> its test of a word with a pattern."""
 
 
-def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWord]:
+def wrong_patterns(function: str, text: WordType, pattern: WordType) -> Iterator[WrongWord]:
     """Yield the patterns of a LIKE, or of a function such as starts_with, that match no possible word of the text."""
     if function not in _PATTERN_TEST_BY_FUNCTION or not (
         isinstance(text, PossibleWords) and isinstance(pattern, PossibleWords) and pattern.direct

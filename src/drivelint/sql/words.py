@@ -35,7 +35,7 @@ Quantity = Literal["existence", "identity", "position", "heading", "velocity", "
 """The quantities of an actor that may be uncertain."""
 
 
-class Vocabulary(NamedTuple):
+class ColumnVocabulary(NamedTuple):
     """A vocabulary: its name, its words in order, a regular expression for further words ('': none), and their meaning.
 
     `open`: any other word is valid, too, except a misspelled word of the vocabulary.
@@ -79,7 +79,7 @@ class WordColumn(NamedTuple):
     `is_list`: it has lists of words or STRUCTs.
     """
 
-    vocabulary: Vocabulary
+    vocabulary: ColumnVocabulary
     field: str = ""
     is_list: bool = False
 
@@ -90,10 +90,10 @@ def nearest_word_hint(word: str, known_words: Iterable[str]) -> str:
 
 
 @cache
-def vocabularies() -> dict[str, Vocabulary]:
+def vocabularies() -> dict[str, ColumnVocabulary]:
     """Return name -> vocabulary, in the order of the file."""
     facts = toml_facts(folder("schemas") / "words.toml")
-    return {name: Vocabulary(name, **about | {"words": tuple(about["words"])}) for name, about in facts.items()}
+    return {name: ColumnVocabulary(name, **about | {"words": tuple(about["words"])}) for name, about in facts.items()}
 
 
 def words_of_vocabulary(name: str) -> tuple[str, ...]:

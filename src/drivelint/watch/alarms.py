@@ -175,7 +175,7 @@ class AlarmLog:
     def _is_same_finding(self, alarm: Alarm, row: Row) -> bool:
         return finding_key(alarm.row) == finding_key(row) and alarm.is_continued_by(row, self._allowed_gap_ns(alarm))
 
-    def assign_findings_to_alarms(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+    def assign_findings_and_return_unassigned(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
         """Assign the findings of the whole log to the alarms, and return the findings without an alarm.
 
         Withdrawn alarms are included: the whole log may confirm their findings.

@@ -63,7 +63,7 @@ def check_recording(
 
 def report_outcome(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
     """Report for each alarm whether the whole log confirms it, then the late and the revised verdicts. Return the counts as a text."""
-    missed = watch.alarms.assign_findings_to_alarms(result.findings.to_pylist(), result.verdicts)
+    missed = watch.alarms.assign_findings_and_return_unassigned(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.alarm_outcome(alarm))
     late, other = watch.settled.late_and_revised_rows(result.verdicts)

@@ -129,9 +129,9 @@ class _SectionBuilder:
             _make_neighbours(a, b)
         self.lanes.built.update((lanelet.key, lanelet) for lanelet in lanelets)
 
-    def _lanelet(self, lane: Lane, edges: LaneEdges, s: Floats, rows: tuple[int, int]) -> Lanelet:
-        """Return the lanelet of a lane. `rows`: the rows of its left and right edge in `edges`, seen along the reference line."""
-        i, j = rows
+    def _lanelet(self, lane: Lane, edges: LaneEdges, s: Floats, edge_rows: tuple[int, int]) -> Lanelet:
+        """Return the lanelet of a lane. `edge_rows`: the rows of its left and right edge in `edges`, seen along the reference line."""
+        i, j = edge_rows
         along, bidirectional = self.direction.direction_and_is_two_way(lane)
         line = edges.line
         t, dt = 0.5 * (edges.t[i] + edges.t[j]), 0.5 * (edges.dt[i] + edges.dt[j])

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Indices, Times
     from drivelint.formats.ros2.cdr import Table
 
-STALE_AFTER_NS: Final = 1_000_000_000
+LIGHT_REPORT_STALE_AFTER_NS: Final = 1_000_000_000
 """A report of lights is valid for at most this time: vehicles send ten or more per second."""
 _AUTONOMOUS = 1
 _HAZARD_ON = 2
@@ -93,7 +93,7 @@ def _frame_name(recorded: bytes) -> str:
 
 
 def indicator_codes(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
-    """Return the ego's indicator at the given times, from the last reports of at most `STALE_AFTER_NS` before; -1 if unknown.
+    """Return the ego's indicator at the given times, from the last reports of at most `LIGHT_REPORT_STALE_AFTER_NS` before; -1 if unknown.
 
     Hazard lights take precedence over left and right. A report of hazard lights alone does not show that both indicators are off.
     """
@@ -113,7 +113,7 @@ def _last_fresh_values(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) 
     order = np.argsort(reports[0], kind="stable")
     times, values = reports[0][order], reports[1][order].astype(np.int64)
     at = np.searchsorted(times, t_ns, side="right") - 1
-    fresh = (at >= 0) & (t_ns - times[np.maximum(at, 0)] <= STALE_AFTER_NS)
+    fresh = (at >= 0) & (t_ns - times[np.maximum(at, 0)] <= LIGHT_REPORT_STALE_AFTER_NS)
     return np.where(fresh, values[np.maximum(at, 0)], -1)
 
 

@@ -79,7 +79,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     objects = log.select_topic(OBJECT_CONVERTERS, "road users")
     log.unread.refuse_kinds(path, OBJECT_CONVERTERS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
-    odometry, is_centre = _ego_rows_and_has_centre(log, options)
+    odometry, is_centre = _ego_poses_by_topic_and_has_centre(log, options)
     parts |= odometry
     if not sum(map(len, parts.values())):
         raise _nothing_to_read_error(path, log)
@@ -193,7 +193,7 @@ def _topic_by_map(log: Log) -> dict[bytes, str]:
     return maps
 
 
-def _ego_rows_and_has_centre(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
+def _ego_poses_by_topic_and_has_centre(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.
@@ -213,14 +213,14 @@ def _ego_rows_and_has_centre(log: Log, options: IngestOptions) -> tuple[dict[str
             log.findings += _centre_mismatch_findings(box, ahead_m)
             has_box_centre = True
     if not odometry:
-        rows, has_box_centre = _ego_rows_by_transforms(log, box, ahead_m, options.ego)
+        rows, has_box_centre = _ego_poses_by_transforms_and_has_centre(log, box, ahead_m, options.ego)
     if box is not None and rows:
         size = "{:.2f} m by {:.2f} m; its centre in the ego's frame is not stated".format(*box.size)
         log.notes.append(f"the ego's box is taken from {box.source}: {box.text() if has_box_centre else size}")
     return rows, has_box_centre or ahead_m != 0.0
 
 
-def _ego_rows_by_transforms(
+def _ego_poses_by_transforms_and_has_centre(
     log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
 ) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by the transforms of its frame, if a chain leads to it, and whether the box gave their centres."""

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 _SENSE_WORDS: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _DANGER_SPACE_TAG: Final = "danger_space"
 """The tag of rules whose plan views show danger spaces."""
-MAX_INCIDENTS_IN_SUMMARY: Final = 6
-"""The printed report shows the plan views of this many moments of a drive."""
+MAX_INCIDENTS_IN_DRIVE_SUMMARY: Final = 6
+"""The summary of a drive, which the printed report shows, has at most this many incidents."""
 
 
 class FindingLine(NamedTuple):
@@ -144,7 +144,7 @@ def _ranks_in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
         worst = (SEVERITIES.index(row["severity"]), ratio, incident_key(row))
         first[row["rule_id"]] = min(first.get(row["rule_id"], worst), worst)
     order = list(dict.fromkeys(at for _, _, at in sorted(first.values())))
-    return {at: n for n, at in enumerate(order[:MAX_INCIDENTS_IN_SUMMARY])}
+    return {at: n for n, at in enumerate(order[:MAX_INCIDENTS_IN_DRIVE_SUMMARY])}
 
 
 def incidents(lines: Sequence[FindingLine], views: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:

@@ -64,23 +64,26 @@ class Axis(NamedTuple):
         return [(svg_number(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
 
 
-def axis_around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
-    """Return an axis that shows all values, with a margin on both sides; `room`: the margin as a share of the values' range."""
+def axis_around(values: Iterable[float], drawn_start: float, drawn_end: float, room: float = 0.06) -> Axis:
+    """Return an axis that shows all values, with a margin on both sides; `room`: the margin as a share of the values' range.
+
+    It is drawn from `drawn_start` to `drawn_end`.
+    """
     found = list(values)
     low, high = min(found), max(found)
     pad = (high - low) * room or max(abs(high) * 0.1, 0.5)
-    return Axis(low - pad, high + pad, start, end)
+    return Axis(low - pad, high + pad, drawn_start, drawn_end)
 
 
 def axis_for_deciding_values(
-    values: Iterable[float], deciding: Iterable[float], start: float, end: float
+    values: Iterable[float], deciding: Iterable[float], drawn_start: float, drawn_end: float
 ) -> tuple[Axis, list[float]]:
     """Return an axis on which the `deciding` values are distinguishable, and the least and greatest value if the axis cuts them off.
 
     The axis shows all values, unless their range is so wide that the deciding values would be drawn on top of each other.
     """
     found, core = list(values), list(deciding)
-    whole = axis_around([*found, *core], start, end)
+    whole = axis_around([*found, *core], drawn_start, drawn_end)
     if not core:
         return whole, []
     span = max(max(core) - min(core), _LEAST_DECIDING_SPAN_SHARE * (whole.high - whole.low))
@@ -90,7 +93,7 @@ def axis_for_deciding_values(
         max(whole.low, min(core) - _SPANS_BEYOND_DECIDING_VALUES * span),
         min(whole.high, max(core) + _SPANS_BEYOND_DECIDING_VALUES * span),
     )
-    return Axis(low, high, start, end), [v for v in (min(found), max(found)) if not low <= v <= high]
+    return Axis(low, high, drawn_start, drawn_end), [v for v in (min(found), max(found)) if not low <= v <= high]
 
 
 def round_step(value: float) -> float:

@@ -128,8 +128,8 @@ def _write_table(
             _table_uri(where),
             Schema.from_arrow(schema),
             added,
-            name=_delta_name(table),
-            description=_delta_description(run_id),
+            name=_delta_lake_table_name(table),
+            description=_delta_lake_table_description(run_id),
             storage_options=_STORAGE_OPTIONS,
             commit_properties=about,
         )
@@ -148,10 +148,10 @@ def _open_table(where: str, table: str, run_id: str) -> DeltaTable | None:
     except TableNotFoundError:
         return None
     about = found.metadata()
-    if (about.name, about.description) != (_delta_name(table), _delta_description(run_id)):
+    if (about.name, about.description) != (_delta_lake_table_name(table), _delta_lake_table_description(run_id)):
         of = (
             "by other rules, parameters or versions"
-            if about.name == _delta_name(table)
+            if about.name == _delta_lake_table_name(table)
             else "that drivelint did not write"
         )
         raise UsageError(f"{where}: has a Delta table {of}: choose another --delta")
@@ -176,11 +176,11 @@ def _file_name_by_hash(file: Path) -> str:
         return f"{hashlib.file_digest(content, 'sha256').hexdigest()}.parquet"
 
 
-def _delta_name(table: str) -> str:
+def _delta_lake_table_name(table: str) -> str:
     return f"drivelint {table}"
 
 
-def _delta_description(run_id: str) -> str:
+def _delta_lake_table_description(run_id: str) -> str:
     return f"audit {run_id}"
 
 

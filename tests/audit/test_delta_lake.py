@@ -15,8 +15,8 @@ import pyarrow.parquet as pq
 import pytest
 from deltalake import DeltaTable, write_deltalake
 
-from drivelint.audit import delta, merge
-from drivelint.audit.delta import DIGEST_KEY, TABLE_NAMES
+from drivelint.audit import delta_lake, merge
+from drivelint.audit.delta_lake import DIGEST_KEY, TABLE_NAMES
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Progress, Silent
 from drivelint.result.publishing import OutputError
@@ -33,10 +33,10 @@ N_DRIVES = 6
 _IN_DELTA = (pa.types.is_string, pa.types.is_boolean, pa.types.is_int32, pa.types.is_int64, pa.types.is_float64)
 _KILLED = """
 import os, signal, sys
-from drivelint.audit import delta, merge
+from drivelint.audit import delta_lake, merge
 from drivelint.report.progress import Silent
 
-wrote = delta.open_store
+wrote = delta_lake.open_store
 
 def killed(where):
     store = wrote(where)
@@ -49,7 +49,7 @@ def killed(where):
         store.write = half
     return store
 
-delta.open_store = killed
+delta_lake.open_store = killed
 merge(sys.argv[1], Silent(), sys.argv[2])
 """
 
@@ -311,13 +311,13 @@ def test_an_answer_that_was_cut_off_is_asked_for_again_and_errors_have_no_colour
             raise OSError("Generic S3 error\n \x1b[31m↳\x1b[0m cut off")
         return "whole"
 
-    assert delta._run_with_retries("lake", partial(cut, 3)) == "whole"
+    assert delta_lake._run_with_retries("lake", partial(cut, 3)) == "whole"
     assert len(asked) == 3
     asked.clear()
     with pytest.raises(
         OutputError, match=r"^lake: the Delta table failed: Generic S3 error ↳ cut off: run the same command again$"
     ):
-        delta._run_with_retries("lake", partial(cut, 99))
+        delta_lake._run_with_retries("lake", partial(cut, 99))
 
 
 def test_a_place_that_cannot_be_written_makes_exit_code_75(out: Path, tmp_path: Path) -> None:
