@@ -48,6 +48,19 @@ def test_a_header_offset_moves() -> None:
     assert lat == pytest.approx(5_428_000.0 / 0.9996 / 111_195.0, abs=0.2)  # meridian arc on a sphere
 
 
+def test_the_north_of_a_map_is_the_north() -> None:
+    """carla 0.9.16 has this mirrored: see `findings/carla-mirrored-latitude.sh`. It also ignores a false easting and northing, and UTM.
+
+    Source: OpenDRIVE 1.8, 8.2: in a projection x is the east and y the north. The metres are those of WGS 84 at 49 degrees.
+    """
+    shifted = KARLSRUHE.replace("+lon_0=8.4", "+lon_0=8.4 +x_0=500000 +y_0=100000")
+    for reference, x, y in ((KARLSRUHE, 0.0, 0.0), (shifted, 500_000.0, 100_000.0)):
+        begin, north, east = placed(geo_of(xodr_with(reference)), (x, y), (x, y + 1000.0), (x + 1000.0, y))
+        assert begin == (pytest.approx(8.4, abs=1e-9), pytest.approx(49.0, abs=1e-9))
+        assert north == (pytest.approx(8.4, abs=1e-9), pytest.approx(49.0 + 1000.0 / 111_209.0, abs=1e-6))
+        assert east == (pytest.approx(8.4 + 1000.0 / 73_172.0, abs=1e-6), pytest.approx(49.0, abs=1e-6))
+
+
 def test_a_header_offset_turns_first_and_moves_then() -> None:
     """A quarter turn: x of the file runs north, y west. Within a degree of its origin, the projection is a plane."""
     turned = xodr_with(KARLSRUHE, f'<offset x="1000" y="2000" hdg="{math.pi / 2}"/>')
