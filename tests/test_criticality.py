@@ -144,6 +144,31 @@ def test_commonroad(name: str) -> None:
 
 
 @pytest.mark.ci
+def test_whoever_stands_ahead_is_as_near_on_every_course() -> None:
+    """At 20 m/s to a car that stands, braking by 8 m/s2, to a stop 2 m behind it: at v the gap is 2 m + v2 / 16 m/s2.
+
+    omega-prime 0.3.7 has no time to collision with one that stands, and commonroad-crime 0.4.5 another one on each course: seen in
+    `findings/omega-prime-ttc-of-standing-car.sh` and `findings/commonroad-crime-ttc-by-compass.sh`.
+    """
+    t, length = scenes.times(8.0), 4.8
+    braking_s = np.clip(t - 2.0, 0.0, 20.0 / 8.0)
+    s = 50.0 + 20.0 * np.minimum(t, 2.0) + 20.0 * braking_s - 4.0 * braking_s**2
+    drives = []
+    for degrees in (0, 45, 90, 180, 250):
+        way = scenes.road(start=(0.0, 0.0, math.radians(degrees)))
+        ego = scenes.moving("ego", way, t, s, way.own)
+        other = scenes.standing("other", way, t, s[-1] + length + 2.0, way.own)
+        drives.append(scenes.drive([ego, other], way.environment, drive_id=f"course {degrees:03}"))
+    speed = 20.0 - 8.0 * braking_s
+    least = min((s[-1] + 2.0 - s)[speed > 1.0] / speed[speed > 1.0])
+    found = scenes.judged(drives, rules=["criticality.ttc"])
+    assert 0.7 < least < 0.72
+    assert len({row["drive_id"] for row in found}) == len(drives)
+    expected = ("other", "fail", pytest.approx(least, abs=0.01))
+    assert [(row["object_id"], row["verdict"], row["observed"]) for row in found] == [expected] * len(drives)
+
+
+@pytest.mark.ci
 def test_modified_ttc_is_what_a_simulation_finds() -> None:
     """Random pairs at constant accelerations; a braking lead stands in the end (steps of 1 ms, so to 2 ms)."""
     draw = np.random.default_rng(4)
