@@ -14,7 +14,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 # It has wheels for some versions of Python only.
 python3.11 -m venv --without-pip venv 2>/dev/null || python3 -m venv --without-pip venv
-python3 -m pip --python venv install -q --no-compile --no-deps carla==0.9.16 pyproj==3.7.2 certifi
+python3 -m pip --python venv install -q --no-compile --no-deps carla==0.9.16 pyproj==3.7.2 certifi==2026.10.19.post1
 
 cat >seen.py <<'PY'
 import math
