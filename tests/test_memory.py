@@ -318,7 +318,7 @@ def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool
         limit = con.execute("SELECT current_setting('memory_limit')").fetchall()
         con.execute("CREATE TABLE numbers AS SELECT range AS n, hash(range) AS h FROM range(4000000)")
         ((before,),) = con.execute(held).fetchall()
-        memory.release()
+        memory.release_unused_memory()
         ((after,),) = con.execute(held).fetchall()
         assert before > 30_000_000 > after
         assert con.execute("SELECT current_setting('memory_limit')").fetchall() == limit

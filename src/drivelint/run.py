@@ -190,7 +190,7 @@ def judge_logs(
                     strict=settings.strict,
                     required=required,
                     note=progress.note,
-                    release_memory=memory.release,
+                    release_memory=memory.release_unused_memory,
                 )
             )
         limits = ReportingRuleLimits(

@@ -34,10 +34,10 @@ options."""
 _HANDEDNESS_VALUES: Final = ("auto", "lht", "rht")
 _MANIFEST_ONLY_COLUMNS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns that a manifest may have, but no table of states."""
-_LEAST_NUMBER_COLUMNS: Final = 3
+_LEAST_NUMERIC_COLUMNS_OF_STATES: Final = 3
 """A row of a table of states has at least this many numbers: a time and two coordinates."""
 _SAMPLE_LINES: Final = 100
-_LEAST_SIMILARITY: Final = 0.8
+_LEAST_SIMILARITY_FOR_HINT: Final = 0.8
 """From this similarity on, the name of a tag counts as a misspelt column: `maps` does, `lap` does not."""
 _MANIFEST_BATCH_ROWS: Final = 10_000
 
@@ -103,7 +103,7 @@ def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
         text = name.casefold()
         # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
         turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
-        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY))[:1]:
+        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY_FOR_HINT))[:1]:
             yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
@@ -179,11 +179,11 @@ def _may_have_actor_states(path: Path) -> bool:
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
-        return numbers >= _LEAST_NUMBER_COLUMNS or any(map(pa.types.is_nested, types))
+        return numbers >= _LEAST_NUMERIC_COLUMNS_OF_STATES or any(map(pa.types.is_nested, types))
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _SAMPLE_LINES)]
     rows = [row for row in some if any(cell.strip() for cell in row)]
-    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBER_COLUMNS for row in rows)
+    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMERIC_COLUMNS_OF_STATES for row in rows)
 
 
 def _is_number(cell: str) -> bool:

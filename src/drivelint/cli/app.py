@@ -184,7 +184,7 @@ app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 
 
-OBJECTS_BEFORE_COLLECTION: Final = 50_000
+NEW_OBJECTS_BEFORE_GARBAGE_COLLECTION: Final = 50_000
 """New objects before a garbage collection. With the default of Python 3.11 and 3.12 (700), it takes 4 % of the time of short commands."""
 
 
@@ -199,7 +199,7 @@ def main() -> NoReturn:
         )
     block_pandas_import()
     ending_signals.install_handlers()
-    gc.set_threshold(OBJECTS_BEFORE_COLLECTION)
+    gc.set_threshold(NEW_OBJECTS_BEFORE_GARBAGE_COLLECTION)
     try:
         code = _app_with_command("".join(sys.argv[1:2]))(
             standalone_mode=False, default_map=_default_options_of_settings_file()
@@ -211,7 +211,7 @@ def main() -> NoReturn:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # a prefix from the library
-        _exit_with_error(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
+        _exit_with_error(f"{words} (see drivelint {_command_words_of_error(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
@@ -247,7 +247,7 @@ def _command_name(command: CommandInfo) -> str:
     return command.name or get_command_name(command.callback.__name__ if command.callback else "")
 
 
-def _command_words(error: Exception) -> str:
+def _command_words_of_error(error: Exception) -> str:
     """Return the words of the command in which the error occurred, each followed by a space; '' without a command."""
     about, words = getattr(error, "ctx", None), ""
     while about is not None and about.parent is not None:

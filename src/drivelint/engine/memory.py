@@ -59,7 +59,7 @@ class MemoryLimit:
         )
         return True
 
-    def release(self) -> None:
+    def release_unused_memory(self) -> None:
         """Return unused memory to the system, without changing the limits. Call it between statements."""
         try:
             store.release_memory(self._con)

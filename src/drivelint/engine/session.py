@@ -205,7 +205,9 @@ class JudgingSession:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
                     with store.uniform_memory_errors():
                         self._judge_part(
-                            ids, may_retry=may_retry, release=self._memory.release if have_many_states(drives) else None
+                            ids,
+                            may_retry=may_retry,
+                            release=self._memory.release_unused_memory if have_many_states(drives) else None,
                         )
                         set_longitude_and_latitude(self._con, on_earth, "finding")
                         for observer in self._observers:

@@ -75,7 +75,7 @@ def required_value_parts(
     if found is None or row["required"] is None or t_ns is None:
         return []
     keys = {"ego_id": row["ego_id"], "t_ns": t_ns, "object_id": row["object_id"], "profile": row["profile"]}
-    keys = {name: keys[name] for name in found.keys if keys.get(name) is not None}
+    keys = {name: keys[name] for name in found.key_columns if keys.get(name) is not None}
     bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
     where = " AND ".join(f"{name} = $_{name}" for name in keys)
     for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):

@@ -153,7 +153,7 @@ class WindowJudge:
                 found[name] = JudgedWindow(log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **own)
         self._n_passes += 1
         if self._n_passes % PASSES_PER_RELEASE == 0:
-            self._memory.release()
+            self._memory.release_unused_memory()
         return [found[name] for name in sorted(found)]
 
     def __enter__(self) -> Self:

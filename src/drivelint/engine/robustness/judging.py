@@ -136,7 +136,7 @@ class RobustnessJudge:
         gravest, near, others = worst_near_and_other_questions(questions)
         most_states = BATCH_STATES
         if have_many_states(by_id.values()):
-            self._memory.release()
+            self._memory.release_unused_memory()
             most_states //= 2
         self._judge_until_settled(by_id, questions if self._of_all else [*gravest, *near], most_states)
         doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_finding_certain}
