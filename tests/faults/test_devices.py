@@ -109,7 +109,7 @@ def test_a_terminal_without_columns_is_one_of_unknown_width(
     said: str, kept: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", said)
-    streams.make_writable()
+    streams.make_stdout_and_stderr_writable()
     assert os.environ.get("COLUMNS") == kept
 
 

@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.bucket import download, find_object, is_url, list_objects
 from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
-from drivelint.drive.conditions import CONDITION_VALUES
+from drivelint.drive.conditions import RULE_CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
@@ -97,7 +97,7 @@ def expand_manifests(
 
 def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
     """Yield warnings about tags whose name is a condition, or is similar to an option column."""
-    if of_conditions := name_list([f"column {name}" for name in tag_names if name in CONDITION_VALUES]):
+    if of_conditions := name_list([f"column {name}" for name in tag_names if name in RULE_CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in tag_names:
         text = name.casefold()

@@ -56,7 +56,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def restricted_conditions(self) -> dict[str, tuple[str, ...]]:
         """Return condition -> allowed values, for the conditions that restrict the rule."""
-        return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
+        return {name: getattr(self, name) for name in conditions.RULE_CONDITION_VALUES if getattr(self, name)}
 
     @property
     def has_speed_limit_condition(self) -> bool:

@@ -192,7 +192,7 @@ def main() -> NoReturn:
     """Run the command line; for every mistake of a user, print one line on stderr and exit with its code."""
     from typer.exceptions import TyperException
 
-    streams.make_writable()
+    streams.make_stdout_and_stderr_writable()
     if (limit := least_memory_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
         _exit_with_error(
             f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 DIFFERENT_RATE_FACTOR: Final = 1.5
 """Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
-LEAST_SHARE_AT_EGO_STEPS: Final = 0.75
+LEAST_SHARE_OF_EGO_STEPS_WITH_SAMPLE: Final = 0.75
 """A track with samples at this share of the ego's steps between its first and its last sample is not interpolated."""
 _POSITION_AND_VELOCITY_COLUMNS: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
@@ -75,7 +75,7 @@ def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) 
         return None
     steps = ego_steps_ns[first : np.searchsorted(ego_steps_ns, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= LEAST_SHARE_AT_EGO_STEPS * len(steps):  # also true if the ego has no step during the track
+    if shared >= LEAST_SHARE_OF_EGO_STEPS_WITH_SAMPLE * len(steps):  # also true if the ego has no step during the track
         return None
     return own_period if own_period > DIFFERENT_RATE_FACTOR * ego_period_ns or shared < 0.5 * n else None
 

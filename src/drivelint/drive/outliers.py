@@ -25,21 +25,21 @@ if TYPE_CHECKING:
 
 TYRE_LIMIT_MPS2: Final = 12.0
 """No vehicle changes its velocity faster than this and back again (see `ukhc.contact-signature`); an impact does not change it back."""
-MOST_VELOCITY_CHANGE_SHARE: Final = 0.25
+MOST_VELOCITY_CHANGE_SHARE_AT_FALSE_STEP: Final = 0.25
 """At a false step, the velocities before and after it differ by at most this share of the velocity change that the step seems to have."""
 LEAST_JOLTED_ACTORS: Final = 4
 """If at least this many moving actors change speed by the same share at one moment, the log's times or positions are wrong."""
-LEAST_ALIKE_ACTORS_SHARE: Final = 0.8
-LEAST_COMMON_CHANGE_SHARE: Final = 0.12
-MOST_COMMON_SPREAD_SHARE: Final = 0.08
+LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT: Final = 0.8
+LEAST_SPEED_CHANGE_IN_COMMON_JOLT: Final = 0.12
+MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT: Final = 0.08
 """The limits of a common jolt. For each actor, the ratio of its speed to its speed `JOLT_COMPARISON_NS` before and after is computed.
 
-At a common jolt, the median of these ratios differs from 1 by more than `LEAST_COMMON_CHANGE_SHARE`, and at least
-`LEAST_ALIKE_ACTORS_SHARE` of the actors have a ratio within `MOST_COMMON_SPREAD_SHARE` of the median."""
+At a common jolt, the median of these ratios differs from 1 by more than `LEAST_SPEED_CHANGE_IN_COMMON_JOLT`, and at least
+`LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT` of the actors have a ratio within `MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT` of the median."""
 JOLT_COMPARISON_NS: Final = 300_000_000
 AFFECTED_AROUND_JOLT_NS: Final = 500_000_000
 """Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""
-LEAST_JOLTED_MPS: Final = 1.0
+LEAST_SPEED_OF_JOLTED_ACTOR_MPS: Final = 1.0
 """For slower actors, relative changes of speed are noise."""
 OUTLIER_SIGMAS: Final = 6.0
 """A sample is an outlier only if it is off by this many standard deviations of the position noise."""
@@ -153,7 +153,7 @@ def _samples_at_false_steps(
     # the velocity must be nearly the same before and after: an impact would change it
     goes_on &= (
         np.hypot(*(after - before))
-        <= MOST_VELOCITY_CHANGE_SHARE * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
+        <= MOST_VELOCITY_CHANGE_SHARE_AT_FALSE_STEP * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
     )
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     outliers[rows] = outliers[rows + 1] = True
@@ -185,20 +185,20 @@ def samples_near_common_jolts(states: States, step: Steps) -> Mask:
     with np.errstate(invalid="ignore", divide="ignore"):
         share = speed[middle] / around
         # actors whose speed differs much before and after the moment are not used
-        usable = (around > LEAST_JOLTED_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
+        usable = (around > LEAST_SPEED_OF_JOLTED_ACTOR_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
     middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
     times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
     if not len(times):
         return near
     order = np.lexsort((share, moment))
     median = share[order][np.r_[0, np.cumsum(count)[:-1]] + count // 2]
-    alike = abs(share - median[moment]) <= MOST_COMMON_SPREAD_SHARE
-    shared = np.bincount(moment[alike], minlength=len(times)) >= LEAST_ALIKE_ACTORS_SHARE * count
-    common = (count >= LEAST_JOLTED_ACTORS) & (abs(median - 1.0) > LEAST_COMMON_CHANGE_SHARE) & shared
+    alike = abs(share - median[moment]) <= MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT
+    shared = np.bincount(moment[alike], minlength=len(times)) >= LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT * count
+    common = (count >= LEAST_JOLTED_ACTORS) & (abs(median - 1.0) > LEAST_SPEED_CHANGE_IN_COMMON_JOLT) & shared
     at = middle[common[moment] & alike]
     # beside a dip, all speeds seem to rise: the median of a window excludes these samples
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
-    at = at[abs(speed[at] / window - 1.0) > LEAST_COMMON_CHANGE_SHARE]
+    at = at[abs(speed[at] / window - 1.0) > LEAST_SPEED_CHANGE_IN_COMMON_JOLT]
     since = states.t_ns - states.t_ns.min()
     key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * AFFECTED_AROUND_JOLT_NS)
     edges = np.zeros(n + 1, np.int64)

@@ -199,7 +199,7 @@ class _KnownConditions:
         self.known_by_ego: dict[str, dict[str, bool]] = {}
 
     def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
-        columns = {**dict.fromkeys(conditions.CONDITION_VALUES), "limit": None}
+        columns = {**dict.fromkeys(conditions.RULE_CONDITION_VALUES), "limit": None}
         known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
         for row in _query_rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive.ego import MOST_SIZE_DIFFERENCE_M
+from drivelint.drive.ego import MOST_UNREPORTED_SIZE_DIFFERENCE_M
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
@@ -236,7 +236,7 @@ def _ego_poses_by_transforms_and_has_centre(
 
 def _centre_mismatch_findings(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
-    if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_SIZE_DIFFERENCE_M:
+    if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_UNREPORTED_SIZE_DIFFERENCE_M:
         return []
     message = (
         f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states "
