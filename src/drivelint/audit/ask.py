@@ -18,7 +18,7 @@ from drivelint.audit.unpacked import create_views_of_all_results
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import terminal_safe, terminal_safe_json
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.folder import changed_files
 from drivelint.sql.internal_names import without_internal_names
 from drivelint.sql.statements import statement
@@ -78,7 +78,7 @@ def _create_views_and_lock(
         if warning := create_views_of_all_results(con, results, downloads).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
-        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
+        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
         con.execute(f"CREATE TEMP VIEW {COUNTED_PREFIX}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]

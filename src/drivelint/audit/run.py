@@ -34,7 +34,7 @@ from drivelint.audit.summary import AuditSummary, summary_of_all_drives, sums_of
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import selectors_of_run
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, LEAST_MEMORY_BYTES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
@@ -233,7 +233,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
     """
     if request.worker_memory is None:
         return request.settings
-    memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
+    memory = DEFAULT_MEMORY_BYTES if request.settings.memory is None else request.settings.memory
     left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES_BESIDE_DATABASE)
     return replace(request.settings, memory=min(memory, left))
 

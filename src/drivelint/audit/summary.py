@@ -13,7 +13,7 @@ from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -203,7 +203,7 @@ def logs_with_flag(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
 def summary_of_all_drives(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return the summary of all drives with receipts. `n_reused`: drives that had a result before this run."""
     create_counted_views(con)
-    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
     broken, contacts, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")

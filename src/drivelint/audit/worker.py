@@ -23,7 +23,7 @@ from drivelint.engine.apart import judge_and_refuse_faulty
 from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
@@ -53,7 +53,7 @@ class Judge:
 
     def __init__(self, settings: JudgeSettings) -> None:
         self._stack = ExitStack()
-        memory = DEFAULT_MEMORY if settings.memory is None else settings.memory
+        memory = DEFAULT_MEMORY_BYTES if settings.memory is None else settings.memory
         self._con = self._stack.enter_context(store.workspace(memory))
         self._con.execute("SET threads=1")
         rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
@@ -148,7 +148,7 @@ class Judge:
         for table in store.tables_of_lifetime("run"):
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
-        self._session.forget_judged()
+        self._session.forget_judged_logs()
         drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
         refusals: list[RefusedLog] = []
         if drives:

@@ -29,7 +29,7 @@ from drivelint.errors import (
     ExitCode,
     UsageError,
     describe_machine_error,
-    least_memory_limit_bytes,
+    memory_limit_of_process_bytes,
 )
 from drivelint.phrases import terminal_safe, terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings, read_settings
@@ -151,7 +151,7 @@ def convert(
     A clip is long enough that, judged alone, it has the same finding.
     """
     from drivelint import convert as converter
-    from drivelint.engine.memory import DEFAULT_MEMORY
+    from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 
     request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
     if (clip is None) is not (folder is None):
@@ -162,7 +162,7 @@ def convert(
         from drivelint.incident.clip import write_clip
 
         name, result = clip, folder
-        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY))
+        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY_BYTES))
     else:
         written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
@@ -193,7 +193,7 @@ def main() -> NoReturn:
     from typer.exceptions import TyperException
 
     streams.make_stdout_and_stderr_writable()
-    if (limit := least_memory_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
+    if (limit := memory_limit_of_process_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
         _exit_with_error(
             f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL
         )

@@ -2,8 +2,8 @@
 
 Plausible positions take precedence over velocities and headings:
 
-* If position and velocity differ by far (`POSITION_VELOCITY_MISMATCH_M`, `SINGLE_STEP_MISMATCH_M`), the whole state is unknown: position, heading
-  and velocity. For example, the position stands still although the velocity is not 0.
+* If position and velocity differ by far (`POSITION_VELOCITY_MISMATCH_M`, `SINGLE_STEP_MISMATCH_M`), the whole state is unknown: position,
+  heading and velocity. For example, the position stands still although the velocity is not 0.
 * If they differ by less, but for half a second (`STRETCH_MISMATCH_MPS`), the position is used and the velocity is unknown.
 * A heading opposite to the motion is turned round, unless the vehicle may be reversing. A heading across the motion is unknown, unless the
   vehicle may be sliding.

@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.order import extent_by_track, track_starts
-from drivelint.drive.velocity import LEAST_MOVEMENT_M, LEAST_NOISE_SAMPLES, Tracklets, noise_of_samples_m
+from drivelint.drive.velocity import (
+    LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M,
+    LEAST_SAMPLES_TO_ESTIMATE_NOISE,
+    Tracklets,
+    noise_of_samples_m,
+)
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
@@ -46,7 +51,7 @@ OUTLIER_SIGMAS: Final = 6.0
 LEAST_FALSE_STEP_BOUNDS_M: Final = (0.05, 0.25)
 """With derived velocities, a step counts if it is longer than 24 m/s2 dt2, clipped to these bounds (m): shorter steps cause no jolt of
 12 m/s2."""
-LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
+LEAST_FALSE_STEP_WITH_RECORDED_VELOCITY_M: Final = 0.4
 """With recorded velocities, a step affects the position only; shorter steps are within the accuracy of boxes."""
 PIECE_ROWS = 1 << 18
 """The number of samples that are processed together, to limit memory."""
@@ -62,7 +67,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     """
     n = len(states)
     no_samples = np.zeros(n, np.bool_)
-    if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
+    if n < LEAST_SAMPLES_TO_ESTIMATE_NOISE or not {"x_m", "y_m"} <= states.numbers.keys():
         return no_samples
     place = states.place
     has_velocity = _has_recorded_velocity(states, place)
@@ -96,7 +101,9 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
-    false_zero = still & (np.nan_to_num(extent_by_track(place, starts)).max(axis=0) > LEAST_MOVEMENT_M)
+    false_zero = still & (
+        np.nan_to_num(extent_by_track(place, starts)).max(axis=0) > LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M
+    )
     told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
     return told
 
@@ -119,7 +126,7 @@ def _samples_off_path(
     off = (to - without) * dt_to
     size = np.hypot(*off)
     s, e = noise_m[2:-2], motion_noise_m[2:-2]
-    least = np.where(has_velocity[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_false_step_m(dt_to))
+    least = np.where(has_velocity[2:-2], LEAST_FALSE_STEP_WITH_RECORDED_VELOCITY_M, _least_false_step_m(dt_to))
     limit = np.maximum(least, np.maximum(TYRE_LIMIT_MPS2 * dt_to * dt_away / 2, OUTLIER_SIGMAS * 1.22 * s))
     # there and back: the path bends towards the sample before it, and back after it
     there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
