@@ -83,7 +83,7 @@ def _centre_line(chains: pa.Table, ego: str, chain: int) -> Floats:
     return np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
 
 
-def _strip_edges(
+def _left_and_right_edges_of_strip(
     line: Floats, start_m: float, end_m: float, offset_m: float, half_width_m: float
 ) -> tuple[Floats, Floats] | None:
     """Return the left and right edge of a strip around the lateral offset `offset_m`; None if the chain has no such stations."""
@@ -122,7 +122,7 @@ def _danger_space_shapes(row: dict[str, Any], line_of: Callable[[str, int], Floa
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
         if None not in (row["chain_id"], s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
-            if strip := _strip_edges(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
+            if strip := _left_and_right_edges_of_strip(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
                 left, right = strip
                 colour = ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR
                 around = np.concatenate([left, right[::-1]])

@@ -26,7 +26,7 @@ LEAST_SHARE_OF_EGO_STEPS_WITH_SAMPLE: Final = 0.75
 _POSITION_AND_VELOCITY_COLUMNS: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
-def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
+def align_to_ego_steps(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
     """Interpolate tracks with other sampling times to the steps of the only ego; return the states and a finding about it."""
     if len(egos) != 1 or egos[0] not in states.ids:
         return states, []
@@ -40,7 +40,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     kept_rows, aligned_tracks, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
-        track_period = _period_to_align_ns(states.t_ns[span], grid, period)
+        track_period = _period_of_track_to_align_ns(states.t_ns[span], grid, period)
         if track_period is None:
             continue
         # a track with a shorter period also keeps its own samples; every track keeps its samples before and after the ego's steps
@@ -59,7 +59,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     return sorted_states(States.concatenate([states.take(kept_rows), *aligned_tracks])), [finding]
 
 
-def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) -> int | None:
+def _period_of_track_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) -> int | None:
     """Return the sampling period of a track that has to be aligned.
 
     None: its samples are at the ego's steps (but for a few), fewer than two, or too far apart.

@@ -38,9 +38,9 @@ LARGEST_CELL_NUMBER: Final = 10**10
 """Numbers of grid cells are clipped to this, so that the cell number times the number of times fits into 64 bits."""
 BOX_PAIRS_PER_PART: Final = 1_000_000
 """The approximate number of pairs of boxes in memory at once."""
-MOST_FALSE_ENTRY_SAMPLES: Final = 3
+MOST_FALSE_TRACK_START_SAMPLES: Final = 3
 """A track with a false start reaches its true position within this many samples."""
-FALSE_ENTRY_LEAST_CHANGE_MPS: Final = 5.0
+FALSE_TRACK_START_LEAST_CHANGE_MPS: Final = 5.0
 """If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
 
@@ -111,7 +111,7 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
-def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
+def false_track_start_findings(states: States, step: Steps) -> list[QualityFinding]:
     """Return a finding on the first samples of tracks that begin with an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
@@ -119,10 +119,10 @@ def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
     ends = np.r_[starts[1:], n]
     with np.errstate(invalid="ignore", divide="ignore"):
         moved = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
-    for k in range(MOST_FALSE_ENTRY_SAMPLES):
-        first = starts[ends - starts > MOST_FALSE_ENTRY_SAMPLES + 2] + k
+    for k in range(MOST_FALSE_TRACK_START_SAMPLES):
+        first = starts[ends - starts > MOST_FALSE_TRACK_START_SAMPLES + 2] + k
         change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
-        hard = change > FALSE_ENTRY_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
+        hard = change > FALSE_TRACK_START_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
