@@ -106,7 +106,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta_lake.require_writable(request.delta, request.out, run_hash)
-    was_unchanged = _create_or_check_settings_and_seal(request, results, run_hash)
+    was_unchanged = _create_or_check_settings_and_test_seal(request, results, run_hash)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.part_name(request.shard, claim=request.claim)
@@ -344,7 +344,7 @@ def _count_or_prune_absent(
     return len(absent)
 
 
-def _create_or_check_settings_and_seal(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
+def _create_or_check_settings_and_test_seal(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
     """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
     Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used

@@ -203,7 +203,7 @@ def _displacements_and_tolerance(states: States, step: Steps, usable: Mask) -> t
     return went, led, np.hypot(*slack)
 
 
-def _position_minus_velocity_differences_m(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
+def _displacement_differences_per_step_m(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
     """Return by how much the displacements of positions and velocities differ in each step (n - 1), and the tolerance."""
     went, led, slack = _displacements_and_tolerance(states, step, usable)
     went -= led
@@ -229,7 +229,7 @@ def _contradictory_velocities(states: States, step: Steps) -> Mask:
     if n <= k:
         return mismatched
     usable = steps_with_known_motion(states, step)
-    alone, slack = _position_minus_velocity_differences_m(states, step, usable)
+    alone, slack = _displacement_differences_per_step_m(states, step, usable)
     went, led, whole, span = motion_over_steps(states, step, usable, k)
     span = np.where(whole, span, np.nan)
     went /= span
