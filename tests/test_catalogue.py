@@ -78,7 +78,7 @@ def test_each_case_alone_and_as_egos(rule_id: str) -> None:
 def test_the_cases_would_notice_a_wrong_rule(rule_id: str) -> None:
     proof = judge_mutants(RULES[rule_id])
     assert proof.n > 0
-    assert (proof.problem, proof.unlisted, proof.stale) == ("", (), ())
+    assert (proof.problem, proof.unlisted_survivors, proof.stale_listed_faults) == ("", (), ())
 
 
 def test_a_survivor_is_listed_of_rules_that_there_are() -> None:

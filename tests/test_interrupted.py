@@ -104,7 +104,7 @@ def options(pack: Path, traces: tuple[str, ...] = TRACES, out: Path | None = Non
 def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
     pack: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, later_s: float
 ) -> None:
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)  # each drive is a batch
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)  # each drive is a batch
     stopper = Stopper(1, later_s=later_s)
     with stopper.acting():
         partial = check(options(pack, out=tmp_path / "a"), stopper, stopper.interruption)
@@ -129,7 +129,7 @@ def test_the_drives_that_were_judged_are_as_if_they_had_been_checked_alone(
 
 @pytest.mark.ci
 def test_before_any_drive_is_judged_there_is_no_result(pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)
     stopper = Stopper(0, later_s=0.01)
     with stopper.acting(), pytest.raises(KeyboardInterrupt):
         check(options(pack, TRACES[1:]), stopper, stopper.interruption)
@@ -152,7 +152,7 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack:
     out = tmp_path / "out"
     args = ["--map", str(OVERTAKE / "road.xodr"), "--mapping", str(OVERTAKE / "mapping.toml"), "--out", str(out)]
     args += ["--rules-dir", str(pack), "--rules", "mine", "--rules", "ukhc.r162.*"]
-    with run("from drivelint.engine import batch\nbatch.BATCH_STATES = 1", "check", *TRACES, *args) as process:
+    with run("from drivelint.engine import batch\nbatch.MAX_BATCH_STATES = 1", "check", *TRACES, *args) as process:
         try:
             until = time.monotonic() + 60
             while not list(out.glob(".drivelint.work.*/annotated/collision*.mcap")) and time.monotonic() < until:
@@ -340,6 +340,6 @@ def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
 
 
 def test_the_first_batches_have_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch.Drive, "states_or_pairs", 40_000)
+    monkeypatch.setattr(batch.Drive, "size_in_states_or_pairs", 40_000)
     drives = [batch.Drive(None, None) for _ in range(30)]  # type: ignore[arg-type]
     assert [len(each) for each in batch.cut_batches(drives)] == [2, 10, 10, 8]

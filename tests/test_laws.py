@@ -201,7 +201,7 @@ def test_order_of_drives_and_of_their_rows() -> None:
 @pytest.mark.slow
 def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     """As many as fit in 10,000 states: two to seven drives. One alone has its own test."""
-    monkeypatch.setattr(batch, "BATCH_STATES", 10_000)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 10_000)
     batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut_batches(crowd())]
     assert len(crowd()) > len(batches) > 3
     assert judged(*batches, rules=RULES, profiles=PROFILES) == list(expected())

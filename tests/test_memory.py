@@ -15,7 +15,7 @@ import pytest
 from drivelint import option_values
 from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, LEAST_MEMORY_BYTES, MemoryLimit
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
 from drivelint.evaluate.evaluation import Evaluation
@@ -99,14 +99,14 @@ def test_any_limit_gives_the_same_files(crowd: tuple[Path, Path], tmp_path: Path
     usual = files(crowded(crowd, out=tmp_path / "a", memory=None, **asked))
     assert not halved
     for no, limit in enumerate(
-        (LEAST_MEMORY_BYTES, 150_000_000, LEAST_MEMORY_BYTES, DEFAULT_MEMORY, LEAST_MEMORY_BYTES)
+        (LEAST_MEMORY_BYTES, 150_000_000, LEAST_MEMORY_BYTES, DEFAULT_MEMORY_BYTES, LEAST_MEMORY_BYTES)
     ):
         same(files(crowded(crowd, out=tmp_path / f"b{no}", memory=limit, **asked)), usual)
     assert halved, "the least memory does not do for as many at once as are tried first"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("limit", [512_000_000, DEFAULT_MEMORY])
+@pytest.mark.parametrize("limit", [512_000_000, DEFAULT_MEMORY_BYTES])
 def test_a_real_log_of_many_egos_gives_the_same_files(limit: int, tmp_path: Path) -> None:
     """The log whose checks ended at random (exit code 1, or 4 and out of memory)."""
     asked: dict[str, Any] = {
@@ -227,7 +227,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monk
 
 
 @pytest.mark.sample(0, ci=1)
-@pytest.mark.parametrize("memory", [DEFAULT_MEMORY, None])
+@pytest.mark.parametrize("memory", [DEFAULT_MEMORY_BYTES, None])
 def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     memory: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -318,7 +318,7 @@ def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool
         limit = con.execute("SELECT current_setting('memory_limit')").fetchall()
         con.execute("CREATE TABLE numbers AS SELECT range AS n, hash(range) AS h FROM range(4000000)")
         ((before,),) = con.execute(held).fetchall()
-        memory.release()
+        memory.release_unused_memory()
         ((after,),) = con.execute(held).fetchall()
         assert before > 30_000_000 > after
         assert con.execute("SELECT current_setting('memory_limit')").fetchall() == limit
@@ -341,8 +341,8 @@ def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatc
 def test_margins_have_the_same_bytes_however_batches_are_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(margins, "ROW_GROUP_ROWS", 100)
     found = []
-    for states in (batch.BATCH_STATES, 1):
-        monkeypatch.setattr(batch, "BATCH_STATES", states)
+    for states in (batch.MAX_BATCH_STATES, 1):
+        monkeypatch.setattr(batch, "MAX_BATCH_STATES", states)
         result = check(
             overtakes("safe", "near_miss", out=tmp_path / str(states), margins=True, annotate=False), Silent()
         )
@@ -383,7 +383,7 @@ def test_margins_go_on_where_memory_ran_out() -> None:
 @pytest.mark.parametrize(
     ("text", "n_bytes"),
     [
-        (None, DEFAULT_MEMORY),
+        (None, DEFAULT_MEMORY_BYTES),
         ("none", None),
         ("512MB", 512_000_000),
         ("1.5 gb", 1_500_000_000),

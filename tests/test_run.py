@@ -60,7 +60,7 @@ class Notes(Silent):
 @pytest.mark.slow
 def test_batches_of_one_drive_give_the_same_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = check(settings(*logs(), robustness=True), Silent())
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)
     single = check(settings(*reversed(logs()), robustness=True), Silent())
     assert whole.verdicts.equals(single.verdicts)
     assert whole.findings.equals(single.findings)
@@ -85,8 +85,8 @@ def test_tracks_are_the_same_wherever_the_egos_are_cut(
 ) -> None:
     """What is a hole in a track depends on the clocks of all egos of the drive."""
     found = []
-    for room in (batch.PAIRS_PER_PART, 1):
-        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
+    for room in (batch.EGO_ACTOR_PAIRS_PER_PART, 1):
+        monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
         monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
         found.append(check(settings(ragged, ego="all", rules=FEW, out=tmp_path / str(room)), Silent()).tracks)
     assert found[0].num_rows == 4
@@ -97,8 +97,8 @@ def test_tracks_are_the_same_wherever_the_egos_are_cut(
 def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every file of the results has the same bytes, and every table of the kept database the same rows."""
     found = []
-    for room in (batch.PAIRS_PER_PART, 1, 1100):
-        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
+    for room in (batch.EGO_ACTOR_PAIRS_PER_PART, 1, 1100):
+        monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
         monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
@@ -124,9 +124,9 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.pairs_by_ego.keys() == set(EGOS)
     assert drive.pairs_by_ego["once"] == 4  # its only step, and the four that are there then
     assert drive.pairs_by_ego["ego"] == 3 * steps["ego"] + 1
-    assert drive.states_or_pairs == sum(drive.pairs_by_ego.values())
+    assert drive.size_in_states_or_pairs == sum(drive.pairs_by_ego.values())
     for room in (1, 1100, 10**9):
-        monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
+        monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
         judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_to_skip_by_part([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.pairs_by_ego[e] for e in part) <= room for part in judged)
@@ -137,8 +137,8 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
 def test_a_drive_of_which_a_part_fails_leaves_nothing(
     ragged: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "PAIRS_PER_PART", 1)
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", 1)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)
     calls = []
 
     def third(con: duckdb.DuckDBPyConnection, *args: Any, **options: Any) -> None:
@@ -356,7 +356,7 @@ def test_a_map_beside_the_drive_makes_map_rules_unknown_not_failed() -> None:
 
 @pytest.mark.slow
 def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)  # several batches, and two maps that take turns
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)  # several batches, and two maps that take turns
     result = check(settings(*logs(), out=tmp_path, keep_db=True, margins=True), Silent())
     with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
         count = {

@@ -36,7 +36,7 @@ CLIP_CHECK_ID: Final = "clip"
 """The data-quality check, information only, that names the log from which a clip was cut."""
 _CONVERTED_KEY: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
-_HEAD_BYTES: Final = 64
+_MCAP_HEAD_BYTES: Final = 64
 """How many bytes of an MCAP file contain its magic bytes and its header, which names the program that wrote the file."""
 
 
@@ -101,13 +101,13 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), told)
     if request.map_offset is not None:
         x, y = request.map_offset
-        trace = replace(_with_log_values(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
+        trace = replace(_with_data_log_values(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
     road, trace, of_road = _map_to_write(request, trace)
     if trace.geo_reference is not None:
         x, y, yaw = trace.geo_offset
-        trace = _with_log_values(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
+        trace = _with_data_log_values(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
     ensure_writable_folder(request.out)
-    write = _write_mcap if request.to == "mcap" else _write_parquet
+    write = _write_mcap_and_return_file_sizes if request.to == "mcap" else _write_parquet_and_return_file_sizes
     files = write(target, trace, road, as_recorded=options.as_recorded)
     notes = [*trace.notes, *of_road, *_notes_on_check_options(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
@@ -155,7 +155,7 @@ def _refuse_to_overwrite_others_files(source: Path, out: Path, target: Path) -> 
 
 def _is_our_mcap(path: Path) -> bool:
     with path.open("rb") as file:
-        return CONVERTED_LOG_LIBRARY.encode() in file.read(_HEAD_BYTES)
+        return CONVERTED_LOG_LIBRARY.encode() in file.read(_MCAP_HEAD_BYTES)
 
 
 def _notes_on_check_options(request: ConvertRequest) -> list[str]:
@@ -166,7 +166,7 @@ def _notes_on_check_options(request: ConvertRequest) -> list[str]:
     return [f"{name} is not part of the converted log: give it in every check" for name in names]
 
 
-def _with_log_values(trace: Trace, **values: str | float) -> Trace:
+def _with_data_log_values(trace: Trace, **values: str | float) -> Trace:
     """Return the trace with these values in its row of `data_log`."""
     log = trace.tables["data_log"]
     for name, value in values.items():
@@ -220,7 +220,9 @@ def _why_unfit_for_mcap(road: MapSource) -> str | None:
     return None
 
 
-def _write_mcap(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
+def _write_mcap_and_return_file_sizes(
+    target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool
+) -> dict[str, int]:
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with temporary.open("wb") as file:
@@ -236,7 +238,9 @@ def _write_mcap(target: Path, trace: Trace, road: MapSource | None, *, as_record
     return {target.name: size}
 
 
-def _write_parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
+def _write_parquet_and_return_file_sizes(
+    target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool
+) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
     tables["actor_state"] = canonical.with_empty_frames(tables["actor_state"], trace)
     names = [*CONVERTED_TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]

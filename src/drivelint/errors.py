@@ -22,7 +22,9 @@ class ExitCode(IntEnum):
 
 LEAST_ADDRESS_SPACE_BYTES: Final = 2_000_000_000
 """The least address space (`ulimit -v`). With less, libraries end the process at import, with their own messages and exit codes."""
-_LIMIT_TOO_LOW: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
+_MEMORY_LIMIT_TOO_LOW_TEXT: Final = (
+    "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
+)
 MAX_ERROR_LENGTH: Final = 2000
 """The most characters of an error that are shown: a damaged file may contain a name of a megabyte."""
 
@@ -88,10 +90,10 @@ class MemoryShortError(DriveLintError):
     exit_code = ExitCode.NOT_JUDGED
 
     def __init__(self, task: str) -> None:
-        if least_memory_limit_bytes() is None:
+        if memory_limit_of_process_bytes() is None:
             super().__init__(f"{task}: needs more memory than this machine has: use a larger one, or fewer --rules")
         else:
-            super().__init__(f"{task}: {_LIMIT_TOO_LOW}")
+            super().__init__(f"{task}: {_MEMORY_LIMIT_TOO_LOW_TEXT}")
             self.exit_code = ExitCode.TEMPFAIL
 
 
@@ -126,9 +128,9 @@ def describe_machine_error(error: Exception) -> tuple[str, ExitCode] | None:
     A memory limit can have an effect anywhere, even at an import or the start of a thread, and each library words the error differently.
     """
     if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _MEMORY_ERROR_WORDS):
-        limited = least_memory_limit_bytes() is not None
+        limited = memory_limit_of_process_bytes() is not None
         return (
-            _LIMIT_TOO_LOW if limited else "there is too little memory: run the same command again",
+            _MEMORY_LIMIT_TOO_LOW_TEXT if limited else "there is too little memory: run the same command again",
             ExitCode.TEMPFAIL,
         )
     if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
@@ -136,7 +138,7 @@ def describe_machine_error(error: Exception) -> tuple[str, ExitCode] | None:
     return None
 
 
-def least_memory_limit_bytes() -> int | None:
+def memory_limit_of_process_bytes() -> int | None:
     """Return the least memory limit that is set for this process; None: no limit is set, or the system does not report limits."""
     try:
         import resource

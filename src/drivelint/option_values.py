@@ -27,10 +27,10 @@ def parse_today(text: str | None) -> date:
 
 def parse_memory(text: str | None) -> int | None:
     """Read the database's memory limit in bytes, None for `none`; without a text, the default. Errors: `UsageError`."""
-    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
+    from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, LEAST_MEMORY_BYTES
 
     if text is None:
-        return DEFAULT_MEMORY
+        return DEFAULT_MEMORY_BYTES
     if text.strip().lower() == "none":
         return None
     said = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT])(i?)B\s*", text, re.IGNORECASE)

@@ -190,7 +190,7 @@ def judge_logs(
                     strict=settings.strict,
                     required=required,
                     note=progress.note,
-                    release_memory=memory.release,
+                    release_memory=memory.release_unused_memory,
                 )
             )
         limits = ReportingRuleLimits(
@@ -343,7 +343,7 @@ def _judge_copies(session: JudgingSession, progress: Progress, memory: MemoryLim
         findings = one_finding_per_event(memory.run_job(collect.findings).to_pylist())
         # the number of findings is shown before the copies are judged
         word = "finding" if len(findings) == 1 else "findings"
-        progress.stage(f"{severity_counts_text(findings)} {word}; judging copies", session.n_findings_to_copy())
+        progress.stage(f"{severity_counts_text(findings)} {word}; judging copies", session.n_findings_to_copy_first())
         session.judge_copies(progress.advance)
 
 

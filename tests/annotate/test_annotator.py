@@ -300,7 +300,7 @@ def test_an_annotated_log_can_be_checked_and_annotated_again(logged: tuple[Path,
 def test_the_same_bytes_alone_or_in_a_crowd_in_any_order(
     out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)
     others = run(tmp_path / "a", *(CASE / f"{name}.csv" for name in ("collision", "safe")))
     alone = run(tmp_path / "b", CASE / "near_miss.csv")
     for path in (*others.glob("*.mcap"), *alone.glob("*.mcap")):

@@ -182,7 +182,7 @@ def test_what_is_not_known_is_left_out(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_of_a_long_drive_every_nth_step_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = content(messages(the(run(tmp_path / "a", CASE / "safe.csv"), "safe"), "measures"))
-    monkeypatch.setattr(measures, "MAX_STEPS", 50)
+    monkeypatch.setattr(measures, "MAX_WRITTEN_STEPS", 50)
     fewer = content(messages(the(run(tmp_path / "b", CASE / "safe.csv"), "safe"), "measures"))
     assert len(fewer) <= 50
     assert fewer == whole[:: -(-len(whole) // 50)]

@@ -15,7 +15,7 @@ from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge,
 from drivelint.audit import run as audit_run
 from drivelint.audit.ask import run_query
 from drivelint.audit.compact import compact
-from drivelint.audit.driver import MOST_ATTEMPTS, divide_into_tasks
+from drivelint.audit.driver import MOST_ATTEMPTS_PER_DRIVE, divide_into_tasks
 from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.lock import lock_results
 from drivelint.audit.model import AuditDrive
@@ -137,14 +137,14 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     released: list[MemoryLimit] = []
-    release = MemoryLimit.release
+    release = MemoryLimit.release_unused_memory
     monkeypatch.setattr(worker, "TASKS_PER_RELEASE", 1)
 
     def noted(memory: MemoryLimit) -> None:
         released.append(memory)
         release(memory)
 
-    monkeypatch.setattr(MemoryLimit, "release", noted)
+    monkeypatch.setattr(MemoryLimit, "release_unused_memory", noted)
     assert judged(drives, tmp_path / "out", InThisProcess()).digest == undisturbed[1].digest
     assert len(released) > 1
 
@@ -215,8 +215,8 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     executor = InThisProcess(poison="drive-00003")
     counted = judged(drives, tmp_path / "out", executor)
     assert (counted.n_judged, counted.quarantined) == (N_DRIVES - 1, 1)
-    assert len(executor.lost) == MOST_ATTEMPTS
-    assert executor.lost[1:] == [1] * (MOST_ATTEMPTS - 1)
+    assert len(executor.lost) == MOST_ATTEMPTS_PER_DRIVE
+    assert executor.lost[1:] == [1] * (MOST_ATTEMPTS_PER_DRIVE - 1)
     (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
     assert row["status"] == "not_judged"
     assert "3 workers died on this drive: the worker died" in str(row["status_reason"])

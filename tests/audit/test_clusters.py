@@ -70,7 +70,7 @@ def sleepers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[
     """Two workers that sleep for as many seconds as a task says, with the executor that hands out such tasks."""
     monkeypatch.setattr("drivelint.audit.executors.dask.run_task", time.sleep)
     monkeypatch.setattr("drivelint.audit.executors.dask.WORKERLESS_S", 1.0)
-    monkeypatch.setattr("drivelint.audit.executors.dask._CHECK_PERIOD_S", 0.5)
+    monkeypatch.setattr("drivelint.audit.executors.dask._CLUSTER_CHECK_PERIOD_S", 0.5)
     with dask(tmp_path, 2) as cluster:
         executor: Any = _on(cluster.address)
         yield cluster, executor

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @pytest.mark.ci
 def test_the_bar_is_for_a_terminal_only(tmp_path: Path) -> None:
-    workshop.new_rule("mine.one", tmp_path, "invariant")
+    workshop.write_new_rule("mine.one", tmp_path, "invariant")
     command = [sys.executable, "-m", "drivelint", "rules", "test", str(tmp_path), "--mutate"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src"), "TERM": "xterm", "COLUMNS": "100"}
     plain = subprocess.run(command, capture_output=True, check=False, env=environment)

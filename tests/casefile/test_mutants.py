@@ -110,7 +110,7 @@ def test_a_fault_that_stands_twice_has_two_names(tmp_path: Path) -> None:
 def test_good_cases_notice_every_mutant(tmp_path: Path) -> None:
     proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES))
     assert proof == mutation.MutationResult("pack.rule", True, 4, (), ())
-    assert (proof.ok, proof.noticed) == (True, 4)
+    assert (proof.ok, proof.n_noticed) == (True, 4)
 
 
 def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> None:
@@ -133,7 +133,7 @@ def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     listed = [entry.format("sense > -> >="), entry.format("params.limit * 0.9")]
     file = rule.path.parent / mutation.SURVIVORS_FILE
     file.write_text(listed[0], encoding="utf-8")
-    assert mutation.judge_mutants(rule).unlisted == ("params.limit * 0.9",)
+    assert mutation.judge_mutants(rule).unlisted_survivors == ("params.limit * 0.9",)
     file.write_text("".join(listed), encoding="utf-8")
     assert mutation.judge_mutants(rule).ok
     assert mutation.noticed_share([mutation.judge_mutants(rule)]) == 0.5, (
@@ -141,14 +141,14 @@ def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     )
     file.write_text("".join([*listed, entry.format("sense > -> <=")]), encoding="utf-8")
     proof = mutation.judge_mutants(rule)
-    assert (proof.ok, proof.stale) == (False, ("sense > -> <=",))
+    assert (proof.ok, proof.stale_listed_faults) == (False, ("sense > -> <=",))
     file.write_text(entry.format("x").replace("pack.rule", "pack.gone"), encoding="utf-8")
     assert mutation.unknown_rule_messages([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
 
 
 def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None:
     proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass")))
-    assert (proof.ok, proof.noticed, proof.n) == (False, 0, 4)
+    assert (proof.ok, proof.n_noticed, proof.n) == (False, 0, 4)
     assert "case 'unknown': expected pass, got unknown" in proof.problem
 
 

@@ -20,7 +20,7 @@ KINDS = ("invariant", "execution", "precondition", "postcondition")
 @pytest.mark.sample(0, ci=1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Path, kind: str) -> None:
-    sql, cases = workshop.new_rule(f"mine.r1.{kind}", tmp_path, kind)
+    sql, cases = workshop.write_new_rule(f"mine.r1.{kind}", tmp_path, kind)
     assert (sql.name, cases.name) == (f"r1.{kind}.sql", f"r1.{kind}.cases.yml")
     rule = read_rule(sql)
     assert (rule.id, rule.kind, rule.status) == (f"mine.r1.{kind}", kind, "draft")
@@ -32,8 +32,8 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
 
 @pytest.mark.slow
 def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
-    workshop.new_rule("mine.two", tmp_path, "invariant")
+    sql, cases = workshop.write_new_rule("mine.one", tmp_path, "invariant")
+    workshop.write_new_rule("mine.two", tmp_path, "invariant")
     monkeypatch.setattr(mutation, "judge_all_mutants", lambda *_: iter(()))
     for file in (sql, cases):
         assert said_of(file) == (ExitCode.OK, "ok   mine.one: 10 of 10 checks")
@@ -47,14 +47,14 @@ def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, mon
 
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
-    sql, cases = workshop.new_rule("mine.one", tmp_path, "invariant")
+    sql, cases = workshop.write_new_rule("mine.one", tmp_path, "invariant")
     sql.write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"one\.sql is there already: nothing was written"):
-        workshop.new_rule("mine.one", tmp_path, "invariant")
+        workshop.write_new_rule("mine.one", tmp_path, "invariant")
     sql.unlink()
     cases.write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"one\.cases\.yml is there already: nothing was written"):
-        workshop.new_rule("mine.one", tmp_path, "invariant")
+        workshop.write_new_rule("mine.one", tmp_path, "invariant")
     assert not sql.exists()
     assert cases.read_text(encoding="utf-8") == "mine"
 
@@ -64,19 +64,19 @@ def test_nothing_is_overwritten(tmp_path: Path) -> None:
 )
 def test_what_is_no_rule_id(tmp_path: Path, rule_id: str) -> None:
     with pytest.raises(UsageError, match="is no rule id: write PACK"):
-        workshop.new_rule(rule_id, tmp_path, "invariant")
+        workshop.write_new_rule(rule_id, tmp_path, "invariant")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_new_rule_does_not_take_the_name_of_a_shipped_one(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is shipped already"):
-        workshop.new_rule("ukhc.r124.speed-limit", tmp_path, "invariant")
+        workshop.write_new_rule("ukhc.r124.speed-limit", tmp_path, "invariant")
 
 
 def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("a file", encoding="utf-8")
     with pytest.raises(UsageError, match="cannot write there"):
-        workshop.new_rule("mine.one", tmp_path, "invariant")
+        workshop.write_new_rule("mine.one", tmp_path, "invariant")
 
 
 @pytest.mark.slow
@@ -140,7 +140,7 @@ def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp
 def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workshop, "_CHANGED_FILES_CHECK_PERIOD_S", 0.01)
     rule = with_cases(measured(tmp_path), CASES)
-    workshop.new_rule("mine.other", tmp_path, "invariant")
+    workshop.write_new_rule("mine.other", tmp_path, "invariant")
     over = Event()
     edits = iter(
         [

@@ -49,7 +49,7 @@ def _compared(rule: Rule, case: Case) -> int:
         params = {name: param.default for name, param in rule.params.items()} | case.params
         bound = {name: params[name] for name in found.parameters}
         steps = con.execute(
-            f"FROM margin JOIN ({found.sql}) USING ({', '.join(found.keys)}) WHERE required IS NOT NULL", bound
+            f"FROM margin JOIN ({found.sql}) USING ({', '.join(found.key_columns)}) WHERE required IS NOT NULL", bound
         )
         n = 0
         for row in steps.to_arrow_table().to_pylist():

@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.drive.actors import Actors
 from drivelint.drive.implausible import bodies
-from drivelint.drive.implausible.bodies import repeated_end_findings, same_body_findings
+from drivelint.drive.implausible.bodies import repeated_end_position_findings, same_body_findings
 from drivelint.drive.trace import States
 from tests.drive.tracks import doubts, drive, track
 
@@ -197,7 +197,7 @@ def test_a_pair_of_tracks_takes_no_walk_over_all_actors() -> None:
     ids = Walked(f"{i:03}" for i in range(300))
     states, actors = queue(ids, 4.0)
     assert same_body_findings(states, actors, {"000"}) == []
-    assert repeated_end_findings(states, actors) == []
+    assert repeated_end_position_findings(states, actors) == []
     assert ids.n_walks < 20
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drivelint.drive.order import Steps
-from drivelint.drive.velocity import LARGEST_ERROR_MPS, DerivedVelocity, derive_velocities
+from drivelint.drive.velocity import LARGEST_VELOCITY_ERROR_MPS, DerivedVelocity, derive_velocities
 
 
 def of(t: np.ndarray, x: np.ndarray, y: np.ndarray | None = None) -> DerivedVelocity:
@@ -58,8 +58,8 @@ def test_the_error_of_a_moving_one_is_as_said_or_it_is_unknown(hertz: int, sigma
     found = of(t, noisy(12 * t, sigma), noisy(np.zeros_like(t), sigma, 2))
     known = np.isfinite(found.v_mps[0])
     off = np.abs(found.v_mps[0][known] - 12.0)
-    assert np.sqrt((off**2).mean()) < LARGEST_ERROR_MPS / 2
-    assert off.max() < 2 * LARGEST_ERROR_MPS
+    assert np.sqrt((off**2).mean()) < LARGEST_VELOCITY_ERROR_MPS / 2
+    assert off.max() < 2 * LARGEST_VELOCITY_ERROR_MPS
     assert known[2 * hertz : -2 * hertz].mean() > (0.9 if sigma <= 0.05 or hertz >= 10 else 0.0)
 
 

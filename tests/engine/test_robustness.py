@@ -11,9 +11,9 @@ import pytest
 
 from drivelint import catalogue, demo, run
 from drivelint.engine.robustness.question import (
-    LEAST_KEEPING_SHARE,
-    N_COPIES,
-    SMALL_MARGIN,
+    LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING,
+    N_COPIES_TO_SETTLE,
+    SMALL_MARGIN_BY_UNIT,
     RobustnessQuestion,
     worst_near_and_other_questions,
 )
@@ -60,7 +60,7 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
     assert told
     far = [row for row in told.values() if row["rule_id"] != "ukhc.no-collision"]
     assert len(far) == 4
-    assert all(row["n_stays"] == row["n_copies"] in N_COPIES[:2] for row in far)
+    assert all(row["n_stays"] == row["n_copies"] in N_COPIES_TO_SETTLE[:2] for row in far)
     assert {certainty(row) for row in far} == {SURE}
     contact = told["ukhc.no-collision", None]
     assert -0.03 < contact["margin"] < 0
@@ -127,7 +127,7 @@ def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
 
 def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do() -> None:
     """For a share of all copies that is below 95 %, within a hundredth of the draws."""
-    few, most = N_COPIES[1:]
+    few, most = N_COPIES_TO_SETTLE[1:]
     for share in (0.80, 0.85, 0.90, 0.93, 0.9499):
         by_most = sum(math.comb(most, k) * share**k * (1 - share) ** (most - k) for k in range(95, most + 1))
         assert share**few < by_most + 0.011, share
@@ -139,23 +139,23 @@ def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Robust
 
 
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
-    fewest, few, most = N_COPIES
-    for margin in (-SMALL_MARGIN["m"], -2.0, None):
+    fewest, few, most = N_COPIES_TO_SETTLE
+    for margin in (-SMALL_MARGIN_BY_UNIT["m"], -2.0, None):
         assert question(margin).next_copy_numbers == range(1, few + 1)
     for margin, n in ((-5.0, fewest), (None, few)):
         asked = question(margin)
         assert asked.next_copy_numbers == range(1, n + 1)
-        asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(n + 1), margin))
+        asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(n + 1), margin))
         assert asked.is_settled
         assert (asked.n_stays, asked.n_copies) == (n, n)
     asked = question(-5.0)
     # far from 0 in all copies but one, where it does not apply
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(fewest), -5.0))
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(fewest), -5.0))
     assert not asked.is_settled
     assert asked.next_copy_numbers == range(fewest + 1, few + 1)
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys((0, *asked.next_copy_numbers), -5.0))
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys((0, *asked.next_copy_numbers), -5.0))
     assert asked.next_copy_numbers == range(few + 1, most + 1)
-    asked.add_copies((0, *asked.next_copy_numbers), {0: -5.0})
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
@@ -163,9 +163,9 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
 @pytest.mark.parametrize(("spread", "suffice"), [(0.5, True), (2.0, False)])
 def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
     asked = question(-5.0)
-    asked.add_copies(
+    asked.add_results_of_copies(
         (0, *asked.next_copy_numbers),
-        {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)},
+        {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES_TO_SETTLE[0] + 1)},
     )
     assert asked.is_settled is suffice
 
@@ -174,17 +174,21 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
 def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
     """Of 100 copies, 95 must keep a finding that is sure."""
     asked = question(-2.0)
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0))
+    asked.add_results_of_copies(
+        (0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0)
+    )
     assert asked.is_settled is suffice
     assert not asked.is_finding_certain
 
 
 def test_a_share_of_ones_own_is_that_of_all_copies() -> None:
     """With `--confidence 0.8`, 14 of the first 20 copies say nothing of 85 of 100."""
-    most = N_COPIES[-1]
+    most = N_COPIES_TO_SETTLE[-1]
     asked = question(-2.0)
     asked.ends_early = False
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) - 9), -2.0))
+    asked.add_results_of_copies(
+        (0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) - 9), -2.0)
+    )
     assert not asked.is_settled
     assert asked.next_copy_numbers.stop == most + 1
 
@@ -202,12 +206,12 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
 
 
 def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
-    few, most = N_COPIES[1:]
+    few, most = N_COPIES_TO_SETTLE[1:]
     asked = question(-5.0)
-    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
-    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
+    asked.add_results_of_copies((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
+    asked.add_results_of_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
     assert (asked.size, asked.n_copies, asked.n_stays) == (1, 0, 0)
-    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
+    asked.add_results_of_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
     assert asked.n_copies == 0  # the copies before these are still to be judged
 
 
@@ -219,51 +223,53 @@ def long_question() -> RobustnessQuestion:
 
 
 def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole() -> None:
-    few, most = N_COPIES[1:]
+    few, most = N_COPIES_TO_SETTLE[1:]
     kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
-    asked.add_copies((0, *asked.next_copy_numbers), kept)
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), kept)
     assert (asked.size, asked.n_copies) == (1, 0)
     assert asked.next_copy_numbers == range(1, few + 1)
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few + 1), -2.0))
     assert asked.next_copy_numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
-    passed.add_copies((0, *range(1, few + 1)), kept, {few})
+    passed.add_results_of_copies((0, *range(1, few + 1)), kept, {few})
     assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
     short = question(-2.0)
-    short.add_copies((0, *short.next_copy_numbers), kept)
+    short.add_results_of_copies((0, *short.next_copy_numbers), kept)
     assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
 
 
 def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
-    assert LEAST_KEEPING_SHARE == certainties.LEAST_KEEPING_SHARE
-    few, _ = N_COPIES[1:]
+    assert LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING == certainties.LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
+    few, _ = N_COPIES_TO_SETTLE[1:]
     asked = long_question()
-    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
+    asked.add_results_of_copies(
+        (0, *asked.next_copy_numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few))
+    )
     assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
 
 
 def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None:
-    few, most = N_COPIES[1:]
+    few, most = N_COPIES_TO_SETTLE[1:]
     asked = question(-2.0)
     asked.is_hasty = True
     assert asked.next_copy_numbers == range(1, most + 1)
-    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
-    asked.add_copies((0, *range(few + 1, most + 1)), {0: -2.0})
+    asked.add_results_of_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_results_of_copies((0, *range(few + 1, most + 1)), {0: -2.0})
     assert (asked.n_copies, asked.n_stays) == (few, few)
 
 
 def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
-    few, most = N_COPIES[1:]
-    small = question(-SMALL_MARGIN["m"])
-    small.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
+    few, most = N_COPIES_TO_SETTLE[1:]
+    small = question(-SMALL_MARGIN_BY_UNIT["m"])
+    small.add_results_of_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
     assert not small.is_settled
     kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
-    small.add_copies((0, *range(few + 1, most + 1)), kept)
+    small.add_results_of_copies((0, *range(few + 1, most + 1)), kept)
     assert (small.n_copies, small.n_stays) == (most, most - 1)
     large = question(None)
     for numbers in (range(1, 21), range(21, few + 1)):
-        large.add_copies((0, *numbers), dict.fromkeys((0, *numbers)))
+        large.add_results_of_copies((0, *numbers), dict.fromkeys((0, *numbers)))
     assert (large.n_copies, large.n_stays) == (few, few)
 
 

@@ -163,8 +163,8 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
 
     monkeypatch.setattr(computing.ProcessorClock, "seconds", lambda _work: now)
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
-    monkeypatch.setattr(limits, "_CHECK_PERIOD_S", 0.001)
-    monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
+    monkeypatch.setattr(limits, "_RULE_LIMIT_CHECK_PERIOD_S", 0.001)
+    monkeypatch.setattr(limits, "_GRACE_AFTER_MEMORY_EXCESS_S", 60.0)
     held_to = limits.RuleLimits(60.0, unstoppable_rule_handler=cast("limits.UnstoppableRuleHandler", Deaf))
     held_to.memory = lambda: 1_000
     with duckdb.connect() as con, held_to.limit_statements(con, "mine.grows", alone=True) as held:
@@ -205,12 +205,12 @@ def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_drive_of_several_batches_may_take_as_many_times_as_long() -> None:
     held_to = limits.RuleLimits(30.0)
-    assert held_to.allowed_s == 30.0
+    assert held_to.allowed_cpu_s == 30.0
     held_to.batches = 9.0
-    assert held_to.allowed_s == 270.0
+    assert held_to.allowed_cpu_s == 270.0
     held_to.batches = 0.01
-    assert held_to.allowed_s == 30.0
-    assert limits.RuleLimits(None).allowed_s is None
+    assert held_to.allowed_cpu_s == 30.0
+    assert limits.RuleLimits(None).allowed_cpu_s is None
 
 
 ONE = """

@@ -98,7 +98,7 @@ def test_no_memory_is_no_fault_of_the_program(error: Exception) -> None:
 
 def test_what_does_not_fit_ends_the_run_where_a_limit_is_set(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not MemoryShortError("a").is_about_whole_run
-    monkeypatch.setattr("drivelint.errors.least_memory_limit_bytes", lambda: 10**9)
+    monkeypatch.setattr("drivelint.errors.memory_limit_of_process_bytes", lambda: 10**9)
     error: DriveLintError = MemoryShortError("a")
     assert error.is_about_whole_run
     assert "ulimit -v" in str(error)
@@ -109,7 +109,7 @@ def test_a_terminal_without_columns_is_one_of_unknown_width(
     said: str, kept: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", said)
-    streams.make_writable()
+    streams.make_stdout_and_stderr_writable()
     assert os.environ.get("COLUMNS") == kept
 
 

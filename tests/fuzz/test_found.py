@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.catalogue.load import read_rule
-from drivelint.drive.contradiction import _rows_half_second_around
+from drivelint.drive.contradiction import _first_and_last_rows_within_half_second
 from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.engine import profiles
 from drivelint.errors import RuleError, TraceError, UsageError
@@ -119,7 +119,7 @@ def test_the_neighbours_in_time_are_found_whatever_the_clock_spans() -> None:
         )
 
     pieces = np.array([0, 0, 0, 0, 0, 0, 7, 7, 7])
-    first, last = _rows_half_second_around(Some(), pieces, np.arange(9))  # type: ignore[arg-type]
+    first, last = _first_and_last_rows_within_half_second(Some(), pieces, np.arange(9))  # type: ignore[arg-type]
     assert first.tolist() == [0, 1, 1, 2, 4, 5, 6, 6, 8]
     assert last.tolist() == [0, 2, 3, 3, 4, 5, 7, 7, 8]
 

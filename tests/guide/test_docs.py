@@ -14,7 +14,7 @@ import pytest
 
 from drivelint import cli, guide
 from drivelint.catalogue.header import Conditions, Header
-from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
+from drivelint.drive.conditions import DRIVE_CONDITION_VALUES, RULE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
 from drivelint.formats.ros2.messages import MESSAGE_TYPES
@@ -222,7 +222,7 @@ def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
     assert first_cells("All keys of the header") == list(Header.__struct_fields__)
     assert first_cells("The conditions under which it applies") == list(Conditions.__struct_fields__)
     assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
-    for name, words in CONDITION_VALUES.items():
+    for name, words in RULE_CONDITION_VALUES.items():
         row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it applies"], re.MULTILINE)
         assert row
         named = set(re.findall(r"`([\w-]+)`", row[1]))

@@ -12,7 +12,7 @@ import msgspec
 import pytest
 from rich.console import Console
 
-from drivelint.drive.conditions import CONDITION_VALUES
+from drivelint.drive.conditions import RULE_CONDITION_VALUES
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import ExitCode, TraceError, UsageError
 from drivelint.formats import read_trace
@@ -142,7 +142,7 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     (ego,) = drive.egos
     assert (drive.road, ego.registration) == (None, None)
     # rules that follow the ego's own way need no map but for its speed limits
-    known = {"map", "speed_limits", *SAID_BY_THE_LOG, *CONDITION_VALUES}
+    known = {"map", "speed_limits", *SAID_BY_THE_LOG, *RULE_CONDITION_VALUES}
     assert {signal for rule in ego.cannot for signal in rule.missing_signals} <= known
     assert next(item for item in ego.missing_signals if item.signal == "map").provide.endswith("--map FILE")
 
@@ -260,7 +260,7 @@ def test_a_table_that_no_mapping_fits_gets_one_to_start_from(tmp_path: Path) -> 
     assert not [q for q in mine.quality if q.severity == "error"]
     lacking = {item.signal for item in mine.egos[0].missing_signals}
     # which the table does not have
-    assert {"map", "ego_size"} <= lacking <= {"map", "speed_limits", *SAID_BY_THE_LOG, *CONDITION_VALUES}
+    assert {"map", "ego_size"} <= lacking <= {"map", "speed_limits", *SAID_BY_THE_LOG, *RULE_CONDITION_VALUES}
 
 
 def test_a_file_that_does_not_begin_as_its_suffix_says_is_no_table(
@@ -367,7 +367,7 @@ def test_every_signal_that_the_library_tells_has_advice() -> None:
     )
     signals = {row["signal"] for row in told}
     assert "registration" in signals
-    assert signals | CONDITION_VALUES.keys() == set(ADVICE)
+    assert signals | RULE_CONDITION_VALUES.keys() == set(ADVICE)
     for signal in signals:
         for log_format in ("osi-mcap", "osi-file", "canonical-parquet", "esmini"):
             assert "{" not in how_to_provide(signal, log_format)

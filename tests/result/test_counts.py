@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import one_finding_per_event
 from drivelint.sql.statements import statement
 from tests.report.synthetic import SECOND, finding
@@ -77,6 +77,6 @@ def test_an_audit_counts_as_a_check_does(some: list[dict[str, Any]]) -> None:
         return
     with duckdb.connect() as con:
         con.register("findings", pa.Table.from_pylist(rows))
-        event = statement("fleet/event", of="", least_share=str(LEAST_KEEPING_SHARE))
+        event = statement("fleet/event", of="", least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
         counted = {name for (name,) in con.execute(f"SELECT finding_id FROM ({event})").fetchall()}
     assert counted == set(ids(one_finding_per_event(rows)))

@@ -133,7 +133,7 @@ def test_lanes_near_a_scene_are_kept_once_and_true_to_a_decimetre(
 
 @pytest.mark.slow
 def test_batches_do_not_change_the_evidence(result: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(batch, "BATCH_STATES", 1)
+    monkeypatch.setattr(batch, "MAX_BATCH_STATES", 1)
     single = run(tmp_path)
     for name in list(TABLE_OF_FILE)[4:]:
         assert getattr(single, name).equals(getattr(result, name)), name

@@ -29,7 +29,7 @@ EGO_COLOUR = Colour(0.13, 0.45, 0.95)
 VEHICLE_COLOUR = Colour(0.62, 0.66, 0.72)
 VULNERABLE_COLOUR = Colour(0.95, 0.78, 0.25)
 _VULNERABLE_CLASSES: Final = frozenset({"pedestrian", "bicycle", "animal"})
-_SIZE_IF_UNKNOWN_M: Final = 1.0
+_LENGTH_OR_WIDTH_IF_UNKNOWN_M: Final = 1.0
 _HEIGHT_IF_UNKNOWN_M: Final = 1.5
 RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
@@ -147,7 +147,9 @@ def _constant_box_bytes(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
         length, width, height = (
             float(v) if np.isfinite(v) else d
-            for v, d in zip(size, (_SIZE_IF_UNKNOWN_M, _SIZE_IF_UNKNOWN_M, _HEIGHT_IF_UNKNOWN_M), strict=True)
+            for v, d in zip(
+                size, (_LENGTH_OR_WIDTH_IF_UNKNOWN_M, _LENGTH_OR_WIDTH_IF_UNKNOWN_M, _HEIGHT_IF_UNKNOWN_M), strict=True
+            )
         )
         shade = EGO_COLOUR if is_ego else VULNERABLE_COLOUR if kind in _VULNERABLE_CLASSES else VEHICLE_COLOUR
         cube = draw.cube_without_pose(length, width, height, shade.with_opacity(0.9))

@@ -29,11 +29,11 @@ FREE_COLOUR = Colour(0.20, 0.70, 0.35)
 ENTERED_COLOUR = Colour(0.90, 0.16, 0.16)
 OVERLAP_COLOUR = Colour(1.00, 0.62, 0.05)
 ROLE_COLOUR = Colour(0.95, 0.95, 0.95)
-MAX_STEPS: Final = 5_000
+MAX_DRAWN_STEPS: Final = 5_000
 _POINTS_PER_EDGE: Final = 24
 _HEIGHT_ABOVE_LANE_M: Final = 0.1  # above the lanes
 _LABEL_HEIGHT_M: Final = 1.5
-_LEAST_LENGTH_M: Final = 0.1
+_LEAST_DRAWN_SPACE_LENGTH_M: Final = 0.1
 """Shorter spaces are not drawn."""
 
 
@@ -43,7 +43,7 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
     `spaces`: the danger spaces. `chains`: the centre lines of the lane chains along which they lie, by station.
     """
     rows = spaces.to_pylist()
-    every = max(1, -(-len(rows) // MAX_STEPS))
+    every = max(1, -(-len(rows) // MAX_DRAWN_STEPS))
     by_time = group_rows(rows[::every], lambda row: int(row["t_ns"]))
     for ego in sorted({row["ego_id"] for row in rows}):
         for t in _steps_after_drawn_steps(
@@ -83,14 +83,14 @@ def _centre_line(chains: pa.Table, ego: str, chain: int) -> Floats:
     return np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
 
 
-def _strip_edges(
+def _left_and_right_edges_of_strip(
     line: Floats, start_m: float, end_m: float, offset_m: float, half_width_m: float
 ) -> tuple[Floats, Floats] | None:
     """Return the left and right edge of a strip around the lateral offset `offset_m`; None if the chain has no such stations."""
     if not line.shape[1]:
         return None
     start_m, end_m = max(start_m, line[0, 0]), min(end_m, line[0, -1])
-    if end_m - start_m < _LEAST_LENGTH_M:
+    if end_m - start_m < _LEAST_DRAWN_SPACE_LENGTH_M:
         return None
     s = np.linspace(start_m, end_m, _POINTS_PER_EDGE)
     x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
@@ -122,7 +122,7 @@ def _danger_space_shapes(row: dict[str, Any], line_of: Callable[[str, int], Floa
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
         if None not in (row["chain_id"], s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
-            if strip := _strip_edges(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
+            if strip := _left_and_right_edges_of_strip(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
                 left, right = strip
                 colour = ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR
                 around = np.concatenate([left, right[::-1]])

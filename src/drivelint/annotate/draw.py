@@ -14,7 +14,7 @@ from drivelint.formats.protobuf import wire
 
 MAP_FRAME: Final = "map"
 _CUBES, _LINES, _TRIANGLES, _TEXTS, _ARROWS = 8, 11, 12, 13, 7
-_LABEL_PX: Final = 14.0
+_LABEL_FONT_SIZE_PX: Final = 14.0
 Points = NDArray[np.float64]
 
 
@@ -77,7 +77,7 @@ def ribbon(left: Points, right: Points, colour: Colour) -> bytes:
 
 def label(x: float, y: float, z: float, text: str, colour: Colour) -> bytes:
     """Return a text that faces the viewer and has the same size at any distance."""
-    look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first_number=3) + wire.integer(4, 1)
+    look = wire.integer(2, 1) + wire.doubles(_LABEL_FONT_SIZE_PX, first_number=3) + wire.integer(4, 1)
     return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, colour) + wire.text(6, text))
 
 

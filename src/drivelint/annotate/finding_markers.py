@@ -30,9 +30,11 @@ MAX_MARKER_STEPS_PER_DRIVE: Final = 5_000
 """The most steps of findings that are drawn per drive; if there are more, only every second, third ... step."""
 DRAW_BEFORE_NEAR_MISS_NS: Final = 1_000_000_000  # a short event is drawn longer, so that a person sees it
 LEAST_DRAW_AFTER_EVENT_NS: Final = 2_000_000_000
-LABEL_OFFSET_M: Final = 9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
+LABEL_OFFSET_FROM_EGO_M: Final = (
+    9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
+)
 MAX_LABEL_LINES: Final = 5
-_SIZE_IF_UNKNOWN_M: Final = 1.0
+_LENGTH_OR_WIDTH_IF_UNKNOWN_M: Final = 1.0
 
 
 class Box(NamedTuple):
@@ -133,7 +135,7 @@ def _entities_at_step(step_markers: list[MarkerAtStep], time: int) -> Iterator[b
         if (box := ego_frames[0].ego) is not None:
             more = [f"and {len(ego_frames) - MAX_LABEL_LINES} more"] if len(ego_frames) > MAX_LABEL_LINES else []
             text = "\n".join([*(one.marker.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
-            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, ego_frames[0].marker.colour)
+            label = draw.label(box.x, box.y + LABEL_OFFSET_FROM_EGO_M, box.z + 2.0, text, ego_frames[0].marker.colour)
             yield draw.entity(f"notes on {ego}", time, label)
 
 
@@ -152,7 +154,7 @@ def _pair_outlines(step_marker: MarkerAtStep) -> bytes:
 
 def box_corners(box: Box) -> Floats:
     """Return the four corners of a box at its middle height."""
-    length, width = (v if np.isfinite(v) else _SIZE_IF_UNKNOWN_M for v in (box.length, box.width))
+    length, width = (v if np.isfinite(v) else _LENGTH_OR_WIDTH_IF_UNKNOWN_M for v in (box.length, box.width))
     along, across = np.array([1, 1, -1, -1]) * length / 2, np.array([1, -1, -1, 1]) * width / 2
     c, s = np.cos(box.yaw), np.sin(box.yaw)
     return np.stack([box.x + c * along - s * across, box.y + s * along + c * across, np.full(4, box.z)], axis=1)

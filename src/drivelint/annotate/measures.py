@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from drivelint.annotate.clock import LogClock
 
-MAX_STEPS: Final = 50_000
+MAX_WRITTEN_STEPS: Final = 50_000
 """If a drive has more steps, only every second, third ... step is written: no plot shows more points."""
 
 
@@ -36,7 +36,7 @@ class MarginSeries(NamedTuple):
 
 def measure_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
     """Return the measures of one drive, one message per step; `rows`: result of `evidence/first_ego_measures.sql`, in time order."""
-    every = max(1, -(-len(rows) // MAX_STEPS))
+    every = max(1, -(-len(rows) // MAX_WRITTEN_STEPS))
     return _json_messages(rows.drop_columns("drive_id").to_pylist()[::every], clock)
 
 

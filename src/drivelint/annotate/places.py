@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 POSITION_INTERVAL_NS: Final = 200_000_000
 """The interval of positions: the first position in each fifth of a second is written."""
 _SIMPLIFY_TOLERANCE_M: Final = 0.1  # tolerance of the simplified outlines of lanes
-_DECIMALS: Final = 7  # of a degree: a centimetre
+_DECIMALS_OF_DEGREES: Final = 7  # of a degree: a centimetre
 _FINDING_FACTS: Final = ("finding_id", "rule_id", "profile", "severity", "margin", "unit", "ego_id", "object_id")
 _STYLE_OF_KIND: Final = {
     "finding": {"color": "#e02020"},
@@ -118,4 +118,4 @@ def _positions(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
 
 
 def _rounded_degrees(degrees: Floats) -> Any:
-    return np.round(degrees, _DECIMALS).tolist()
+    return np.round(degrees, _DECIMALS_OF_DEGREES).tolist()

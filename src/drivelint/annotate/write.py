@@ -102,7 +102,7 @@ class _ChannelWriter:
         self._sense_by_rule = {rule["rule_id"]: rule["sense"] for rule in self._rules}
         frames = drive.trace.frame_times
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
-        self._prefix = _free_topic_prefix({channel.topic for channel in sink.channels.values()})
+        self._prefix = _unused_topic_prefix({channel.topic for channel in sink.channels.values()})
         self._has_transforms = any(
             sink.schemas[channel.schema_id].name.endswith(_TRANSFORM_SCHEMAS)
             and not channel.topic.endswith("tf_static")
@@ -175,7 +175,7 @@ class _ChannelWriter:
     def _write_messages(self, topic: str, schema: Schema, messages: list[Message]) -> None:
         encoding = "json" if schema.encoding == "jsonschema" else "protobuf"
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", encoding, schema)
-        for first, group in _message_groups(messages):
+        for first, group in _message_groups_with_first_number(messages):
             size = np.array([len(m.data) for m in group])
             log_time = np.array([m.log_time for m in group], np.uint64)
             heads = actor_boxes.message_headers(channel, log_time, size, first)
@@ -203,7 +203,7 @@ class _ChannelWriter:
         }
 
 
-def _message_groups(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
+def _message_groups_with_first_number(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
     """Yield groups of messages, each of about `CHUNK_BYTES`, with the number of its first message."""
     first, size = 0, 0
     for k, message in enumerate(messages):
@@ -213,7 +213,7 @@ def _message_groups(messages: list[Message]) -> Iterator[tuple[int, list[Message
             first, size = k + 1, 0
 
 
-def _free_topic_prefix(topics: set[str]) -> str:
+def _unused_topic_prefix(topics: set[str]) -> str:
     """Return the first of /drivelint, /drivelint_2, ... that no topic of the log starts with: the log may already be annotated."""
     names = ("/drivelint" if n == 1 else f"/drivelint_{n}" for n in count(1))
     return next(name for name in names if not any(t == name or t.startswith(f"{name}/") for t in topics))

@@ -11,7 +11,7 @@ from drivelint.explain import text
 if TYPE_CHECKING:
     from drivelint.explain import Explanation
 
-_LINE_WIDTH: Final = 120
+_TEXT_LINE_CHARACTERS: Final = 120
 
 
 class Explained:
@@ -25,9 +25,9 @@ class Explained:
         """The text that `drivelint explain` prints."""
         from rich.console import Console
 
-        console = Console(width=_LINE_WIDTH, highlight=False, color_system=None, force_jupyter=False)
+        console = Console(width=_TEXT_LINE_CHARACTERS, highlight=False, color_system=None, force_jupyter=False)
         with console.capture() as captured:
-            console.print(text.render(self._explanation, _LINE_WIDTH))
+            console.print(text.render(self._explanation, _TEXT_LINE_CHARACTERS))
         return "\n".join(line.rstrip() for line in captured.get().splitlines())
 
     def data(self) -> dict[str, Any]:

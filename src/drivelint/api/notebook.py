@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MOST_LISTED_FINDINGS: Final = 10
-MOST_LISTED_UNJUDGED: Final = 10
+MOST_LISTED_UNJUDGED_DRIVES: Final = 10
 
 
 def one_line_summary(result: Result) -> str:
@@ -67,7 +67,9 @@ def summary_html(result: Result) -> str:
         exit_code=int(end.code),
         why=replace_options_by_keywords(end.why),
         inputs=_input_notes_text(result),
-        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_LISTED_UNJUDGED],
+        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][
+            :MOST_LISTED_UNJUDGED_DRIVES
+        ],
         verdicts={word.replace("_", " "): n for word, n in counts.verdict_counts(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),

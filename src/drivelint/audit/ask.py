@@ -18,7 +18,7 @@ from drivelint.audit.unpacked import create_views_of_all_results
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import terminal_safe, terminal_safe_json
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.folder import changed_files
 from drivelint.sql.internal_names import without_internal_names
 from drivelint.sql.statements import statement
@@ -53,14 +53,14 @@ def run_query(dest: str, query: str, format_: str, warn: Callable[[str], None] =
             if format_ == "csv":
                 file = Path(downloads) / "rows.csv"
                 con.execute(f"COPY ({query.strip().rstrip(';')}) TO {quoted(file)} (FORMAT csv, HEADER)")
-                return _CSV_CELL.sub(_safe_cell, file.read_text(encoding="utf-8"))
+                return _CSV_CELL.sub(_spreadsheet_safe_cell, file.read_text(encoding="utf-8"))
             rows = con.execute(statements[0]).to_arrow_table().to_pylist()
         except duckdb.Error as error:
             raise UsageError(f"drivelint sql: {' '.join(without_internal_names(str(error)).split())[:400]}") from error
     return terminal_safe_json(json.dumps(rows, indent=2, default=str, ensure_ascii=False)) + "\n"
 
 
-def _safe_cell(cell: re.Match[str]) -> str:
+def _spreadsheet_safe_cell(cell: re.Match[str]) -> str:
     """Return a CSV cell without control characters that a spreadsheet does not run as a formula. Numbers do not change."""
     quote, text = cell[1] or "", terminal_safe(cell[2] if cell[1] else cell[0])
     is_formula = text.startswith(_FORMULA_STARTS) and not _NUMBER.fullmatch(text)
@@ -73,12 +73,12 @@ def _create_views_and_lock(
     """Create the views of an audit, or of a check's result, and then bar the database from all other files."""
     results = open_store(dest)
     is_audit = results.read(AUDIT_FILE) is not None
-    _warn_of_changes(results, dest, downloads, warn, is_audit=is_audit)
+    _warn_of_changed_files(results, dest, downloads, warn, is_audit=is_audit)
     if is_audit:
         if warning := create_views_of_all_results(con, results, downloads).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
-        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
+        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
         con.execute(f"CREATE TEMP VIEW {COUNTED_PREFIX}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]
@@ -97,7 +97,7 @@ def _create_views_and_lock(
     con.execute("SET lock_configuration=true")
 
 
-def _warn_of_changes(
+def _warn_of_changed_files(
     results: ResultStore, dest: str, downloads: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
     """Warn about the first file that has changed since it was written: the query may read that file.

@@ -29,7 +29,7 @@ _RETRY_OPTIONS: Final[Any] = {
     "backoff": {"init_backoff": timedelta(seconds=0.1), "max_backoff": timedelta(seconds=10), "base": 2},
 }
 """Requests to a busy store are repeated with increasing pauses; then the run ends with exit code 75."""
-_MAX_ATTEMPTS: Final = 6
+_MAX_REQUESTS_PER_ANSWER: Final = 6
 """Largest number of requests for an answer that is cut off each time."""
 _CLIENT_OPTIONS: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
 
@@ -168,13 +168,13 @@ def download(bucket_object: BucketObject, folder: Path) -> Path:
     copy = folder / (path.rpartition("/")[2] or "object")
     options: Any = {"if_match": bucket_object.e_tag} if bucket_object.e_tag else {}
 
-    def download_to_copy() -> None:
+    def download_into_local_file() -> None:
         with copy.open("wb") as file:
             for part in obstore.get(client, path, options=options).stream():
                 file.write(part)
 
     try:
-        _run_with_retries(download_to_copy)
+        _run_with_retries(download_into_local_file)
     except FileNotFoundError:
         raise TraceError(f"{bucket_object.url}: no such object: check the URL") from None
     except exceptions.PreconditionError:
@@ -191,7 +191,7 @@ def download(bucket_object: BucketObject, folder: Path) -> Path:
 def _list_with_retries(client: Any, prefix: str) -> Iterator[Any]:
     """Yield the objects below a prefix, page by page; a page that was cut off is requested again."""
     last: str | None = None
-    for attempt in range(_MAX_ATTEMPTS):
+    for attempt in range(_MAX_REQUESTS_PER_ANSWER):
         try:
             for some in obstore.list(client, prefix=prefix or None, offset=last):
                 for about in some:
@@ -199,13 +199,13 @@ def _list_with_retries(client: Any, prefix: str) -> Iterator[Any]:
                     last = about["path"]
             return  # noqa: TRY300 - return ends the loop
         except (exceptions.GenericError, OSError):
-            if attempt + 1 == _MAX_ATTEMPTS:
+            if attempt + 1 == _MAX_REQUESTS_PER_ANSWER:
                 raise
 
 
 def _run_with_retries(job: Callable[[], T]) -> T:
     """Run a job that reads an object, and repeat it if the answer was cut off: the client does not repeat such requests itself."""
-    for _ in range(_MAX_ATTEMPTS - 1):
+    for _ in range(_MAX_REQUESTS_PER_ANSWER - 1):
         try:
             return job()
         except FileNotFoundError:

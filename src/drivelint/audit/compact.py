@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 DRIVES_PER_CHUNK: Final = 4_000
-MEMORY_LIMIT: Final = "1GB"
+DATABASE_MEMORY_LIMIT: Final = "1GB"
 RECEIPT_SCHEMA: Final = pa.schema(
     [
         *((name, pa.string()) for name in ("key", "source_id", "batch", "status", "log")),
@@ -56,7 +56,7 @@ _VERDICT_SORT_COLUMNS: Final = (
     "key, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, "
     "ref_id NULLS FIRST, t_start_ns NULLS FIRST"
 )
-_ORDER_OF_TABLE: Final = {
+_SORT_COLUMNS_OF_TABLE: Final = {
     "verdicts": _VERDICT_SORT_COLUMNS,
     "findings": f"{_VERDICT_SORT_COLUMNS}, finding_id",
     "drives": "key",
@@ -108,9 +108,9 @@ def remove_drives(results: ResultStore, keys: pa.Array) -> None:
 
 @contextmanager
 def open_database() -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a database in memory that writes to disk what exceeds `MEMORY_LIMIT`."""
+    """Open a database in memory that writes to disk what exceeds `DATABASE_MEMORY_LIMIT`."""
     with TemporaryDirectory(prefix="drivelint-audit-") as spill, duckdb.connect() as con:
-        con.execute(f"SET memory_limit='{MEMORY_LIMIT}'")
+        con.execute(f"SET memory_limit='{DATABASE_MEMORY_LIMIT}'")
         con.execute("SET temp_directory=?", [spill])
         progress_bar.turn_off(con)
         con.execute("SET python_enable_replacements=false")
@@ -210,7 +210,7 @@ def batch_rows_query(
     """Return the SELECT that reads one table's rows from the batches of these receipts, for the drives in the relation `_packed`."""
     files = {each.batch: str(results.fetch(batch_name(table, each.batch), downloads)) for each in receipts}
     con.read_parquet(escape_wildcards(files.values()), filename=True).create_view("_rows", replace=True)
-    return statement("audit/packed", order=_ORDER_OF_TABLE[table])
+    return statement("audit/packed", order=_SORT_COLUMNS_OF_TABLE[table])
 
 
 def _packed_keys(

@@ -41,7 +41,7 @@ TABLE_NAMES: Final = ("rules", *TABLES, "receipts")
 DIGEST_KEY: Final = "drivelint.digest"
 """The key in the metadata of a commit for the `digest` of the audit's summary."""
 _STORAGE_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
-_MAX_ATTEMPTS: Final = 6
+_MAX_STORE_ATTEMPTS: Final = 6
 """Six attempts of 20 s make the two minutes after which a run gives up on a busy store."""
 _COLOUR_CODE: Final = re.compile(r"\x1b\[[0-9;]*m")
 """Colour codes in the error messages of deltalake."""
@@ -70,7 +70,7 @@ def require_writable(dest: str, out: str, run_id: str) -> None:
         import deltalake  # noqa: F401 - only tests whether it is installed
     except ModuleNotFoundError as error:
         raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
-    if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
+    if f"{_absolute_place(dest)}/".startswith(f"{_absolute_place(out)}/"):
         raise UsageError(f"--delta {dest}: lies within the audit: choose a folder outside {out}")
     if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
         raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
@@ -133,7 +133,7 @@ def _write_table(
             storage_options=_STORAGE_OPTIONS,
             commit_properties=about,
         )
-    elif added or removed or _last_digest(store, there.version()) != digest:
+    elif added or removed or _digest_of_newest_commit(store, there.version()) != digest:
         there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
     return DeltaChange(len(added), len(removed))
 
@@ -164,7 +164,7 @@ def _sizes_of_active_files(table: DeltaTable) -> dict[str, int]:
     return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
 
 
-def _last_digest(store: ResultStore, version: int) -> str | None:
+def _digest_of_newest_commit(store: ResultStore, version: int) -> str | None:
     """Return the digest in the newest commit; None: it has none, or the commit file was deleted."""
     lines = (store.read(f"_delta_log/{version:020}.json") or b"").splitlines()
     found = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
@@ -193,7 +193,7 @@ def _table_uri(where: str) -> str:
     return where if is_url(where) else Path(where).absolute().as_uri()
 
 
-def _absolute(place: str) -> str:
+def _absolute_place(place: str) -> str:
     return place.rstrip("/") if is_url(place) else str(Path(place).resolve())
 
 
@@ -204,11 +204,11 @@ def _run_with_retries(where: str, job: Callable[[], T]) -> T:
     """
     from deltalake.exceptions import DeltaError
 
-    for attempt in range(_MAX_ATTEMPTS):
+    for attempt in range(_MAX_STORE_ATTEMPTS):
         try:
             return job()
         except (DeltaError, OSError) as error:
-            if attempt + 1 == _MAX_ATTEMPTS:
+            if attempt + 1 == _MAX_STORE_ATTEMPTS:
                 why = " ".join(_COLOUR_CODE.sub("", str(error)).split())[:300]
                 raise OutputError(f"{where}: the Delta table failed: {why}: run the same command again") from error
     raise AssertionError("unreachable")

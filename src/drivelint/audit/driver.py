@@ -8,7 +8,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 from drivelint.audit.model import AuditDrive, Receipt, Task
-from drivelint.audit.worker import TABLES, rows_sha256, with_key, write_batch
+from drivelint.audit.worker import TABLES, rows_sha256, with_key, write_batch_and_return_valid_receipts
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import DriveLintError, InternalError
 from drivelint.result import collect
@@ -31,7 +31,7 @@ MAX_TASK_DRIVES: Final = 64
 """A task ends when its logs have `FULL_TASK_BYTES` or it has `MAX_TASK_DRIVES` drives, so short drives are judged together."""
 SMALL_TASK_MAX_DRIVES: Final = 8
 """Number of drives in a task if there are few drives. Results then come early, and all workers have work."""
-MOST_ATTEMPTS: Final = 3
+MOST_ATTEMPTS_PER_DRIVE: Final = 3
 """A drive is quarantined after this many workers died on it. From the second attempt on it is judged alone."""
 
 
@@ -105,20 +105,20 @@ class TaskDriver:
                 if isinstance(outcome.error, DriveLintError) and not isinstance(outcome.error, InternalError):
                     raise outcome.error
                 if (why := _loss_reason(outcome)) is not None:
-                    again.extend(self._repeat_lost_task(outcome.task, why))
+                    again.extend(self._quarantine_or_return_repeated_tasks(outcome.task, why))
                 else:
                     self.mark_done(outcome.task.drives)
                 for receipt in outcome.receipts:
                     self.on_receipt(receipt)
             self.between_tasks()
 
-    def _repeat_lost_task(self, task: Task, why: str) -> list[Task]:
+    def _quarantine_or_return_repeated_tasks(self, task: Task, why: str) -> list[Task]:
         """Return the tasks that repeat a lost task: one task per drive. If the task had only one drive, it is repeated until it is
         quarantined."""
         attempts = task.attempts + 1
         if len(task.drives) > 1:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
-        if attempts < MOST_ATTEMPTS:
+        if attempts < MOST_ATTEMPTS_PER_DRIVE:
             return [replace(task, attempts=attempts)]
         for receipt in self._quarantine(task.drives[0], f"{attempts} workers died on this drive: {why}"):
             self.on_receipt(receipt)
@@ -149,7 +149,7 @@ class TaskDriver:
             tags=drive.tags,
             options=drive.options_json,
         )
-        return write_batch(self.results, rows, [receipt])
+        return write_batch_and_return_valid_receipts(self.results, rows, [receipt])
 
 
 def _loss_reason(outcome: TaskOutcome) -> str | None:

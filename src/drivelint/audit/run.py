@@ -34,7 +34,7 @@ from drivelint.audit.summary import AuditSummary, summary_of_all_drives, sums_of
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import selectors_of_run
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, LEAST_MEMORY_BYTES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 AUDIT_FILE: Final = "audit.json"
 RULES_FILE: Final = "rules.parquet"
-_LISTED_RECEIPTS: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
+_LISTED_RECEIPTS_SQL: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES_BESIDE_DATABASE: Final = 500_000_000
@@ -106,7 +106,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta_lake.require_writable(request.delta, request.out, run_hash)
-    was_unchanged = _create_or_check_settings(request, results, run_hash)
+    was_unchanged = _create_or_check_settings_and_test_seal(request, results, run_hash)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.part_name(request.shard, claim=request.claim)
@@ -157,7 +157,7 @@ def _audit_under_lock(
         audit_summary = _judge_remaining(request, con, results, progress, run_hash=run_hash, executor=executor)
         n_reused = n_known + audit_summary.reused
         if not alone:
-            return replace(audit_summary.plus(sums_of_receipts(con, _LISTED_RECEIPTS)), reused=n_reused)
+            return replace(audit_summary.plus(sums_of_receipts(con, _LISTED_RECEIPTS_SQL)), reused=n_reused)
         audit_summary = _pack_and_seal(con, results, Path(downloads), n_reused)
         if request.delta is not None:
             _write_delta(
@@ -233,7 +233,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
     """
     if request.worker_memory is None:
         return request.settings
-    memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
+    memory = DEFAULT_MEMORY_BYTES if request.settings.memory is None else request.settings.memory
     left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES_BESIDE_DATABASE)
     return replace(request.settings, memory=min(memory, left))
 
@@ -344,7 +344,7 @@ def _count_or_prune_absent(
     return len(absent)
 
 
-def _create_or_check_settings(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
+def _create_or_check_settings_and_test_seal(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
     """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
     Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
@@ -387,7 +387,7 @@ def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
 
 def _has_intact_seal(results: ResultStore, dest: str) -> bool:
     with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
-        return sealed.require_listed_files_unchanged(results, Path(downloads), dest)
+        return sealed.require_listed_files_unchanged_and_return_has_list(results, Path(downloads), dest)
 
 
 def _settings_without_memory(settings: JudgeSettings) -> dict[str, Any]:

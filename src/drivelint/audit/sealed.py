@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 _TABLES_FOLDER: Final = "tables"
-_ADVICE: Final = "audit the drives again into another --out"
+_ADVICE_ON_CHANGED_FILE: Final = "audit the drives again into another --out"
 
 
 def seal(results: ResultStore, names: Iterable[str], summary: bytes) -> None:
@@ -48,7 +48,7 @@ def unseal(results: ResultStore) -> None:
     results.delete([MANIFEST])
 
 
-def require_listed_files_unchanged(results: ResultStore, downloads: Path, dest: str) -> bool:
+def require_listed_files_unchanged_and_return_has_list(results: ResultStore, downloads: Path, dest: str) -> bool:
     """Raise `UsageError`, which names the first changed file, if the audit's files have changed since it ended.
 
     Return whether the audit has `files.json`. An audit without it has not ended, or is of an older version. `downloads`: folder for
@@ -62,7 +62,9 @@ def require_listed_files_unchanged(results: ResultStore, downloads: Path, dest: 
         if name not in said or _file_sha256(results, downloads, name) != said[name]:
             if results.read(MANIFEST) is None:  # a shard has found the files unchanged, and has begun to change them
                 return False
-            raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE}")
+            raise UsageError(
+                f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE_ON_CHANGED_FILE}"
+            )
     return True
 
 
@@ -72,7 +74,7 @@ def require_audit_unchanged(results: ResultStore, downloads: Path, dest: str) ->
     `downloads`: folder for copies. Errors: also `OutputError`.
     """
     require_file_list(results, dest)
-    is_listed = require_listed_files_unchanged(results, downloads, dest)
+    is_listed = require_listed_files_unchanged_and_return_has_list(results, downloads, dest)
     before = _file_names(results)
     try:
         require_rows_unchanged(results, dest, packed=not is_listed)
@@ -141,12 +143,14 @@ def _require_rows_match_hashes(
     by_key = {table: dict(_rows_by_key(rows)) for table, rows in read.items()}
     for key, (log, rows_hash) in expected_hashes.items():
         if rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in read.items()}) != rows_hash:
-            raise UsageError(f"{dest}: the rows of {log} were changed since drivelint audit wrote them: {_ADVICE}")
+            raise UsageError(
+                f"{dest}: the rows of {log} were changed since drivelint audit wrote them: {_ADVICE_ON_CHANGED_FILE}"
+            )
     for table, rows in by_key.items():
         n_told = sum(of.num_rows for key, of in rows.items() if key in expected_hashes or not refuse_other_drives)
         if n_told != read[table].num_rows:
             raise UsageError(
-                f"{dest.rstrip('/')}/{names[table]}: has rows that drivelint audit did not write: {_ADVICE}"
+                f"{dest.rstrip('/')}/{names[table]}: has rows that drivelint audit did not write: {_ADVICE_ON_CHANGED_FILE}"
             )
 
 
@@ -166,7 +170,9 @@ def _read_table(
         rows = pq.read_table(results.fetch(name, downloads), partitioning=None)
         return rows if schema is None else rows.cast(schema)
     except (OSError, ValueError) as error:  # errors of pyarrow are subclasses of these
-        raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE}") from error
+        raise UsageError(
+            f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE_ON_CHANGED_FILE}"
+        ) from error
 
 
 def _file_sha256(results: ResultStore, downloads: Path, name: str) -> str | None:

@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.bucket import download, find_object, is_url, list_objects
 from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
-from drivelint.drive.conditions import CONDITION_VALUES
+from drivelint.drive.conditions import RULE_CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
@@ -34,10 +34,10 @@ options."""
 _HANDEDNESS_VALUES: Final = ("auto", "lht", "rht")
 _MANIFEST_ONLY_COLUMNS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns that a manifest may have, but no table of states."""
-_LEAST_NUMBER_COLUMNS: Final = 3
+_LEAST_NUMERIC_COLUMNS_OF_STATES: Final = 3
 """A row of a table of states has at least this many numbers: a time and two coordinates."""
 _SAMPLE_LINES: Final = 100
-_LEAST_SIMILARITY: Final = 0.8
+_LEAST_SIMILARITY_FOR_HINT: Final = 0.8
 """From this similarity on, the name of a tag counts as a misspelt column: `maps` does, `lap` does not."""
 _MANIFEST_BATCH_ROWS: Final = 10_000
 
@@ -97,13 +97,13 @@ def expand_manifests(
 
 def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
     """Yield warnings about tags whose name is a condition, or is similar to an option column."""
-    if of_conditions := name_list([f"column {name}" for name in tag_names if name in CONDITION_VALUES]):
+    if of_conditions := name_list([f"column {name}" for name in tag_names if name in RULE_CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in tag_names:
         text = name.casefold()
         # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
         turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
-        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY))[:1]:
+        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY_FOR_HINT))[:1]:
             yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
@@ -179,11 +179,11 @@ def _may_have_actor_states(path: Path) -> bool:
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
-        return numbers >= _LEAST_NUMBER_COLUMNS or any(map(pa.types.is_nested, types))
+        return numbers >= _LEAST_NUMERIC_COLUMNS_OF_STATES or any(map(pa.types.is_nested, types))
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _SAMPLE_LINES)]
     rows = [row for row in some if any(cell.strip() for cell in row)]
-    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBER_COLUMNS for row in rows)
+    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMERIC_COLUMNS_OF_STATES for row in rows)
 
 
 def _is_number(cell: str) -> bool:

@@ -13,7 +13,7 @@ from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -27,7 +27,7 @@ MOST_LISTED_RULES: Final = 5
 MOST_LISTED_REASONS: Final = 3
 MOST_LISTED_REPEATED_LOGS: Final = 3
 MOST_LISTED_LOGS: Final = 3
-_KEY_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
+_KEY_IN_SUMMARY_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields that have another name in `summary.json`."""
 _UNDECIDED_REASON: Final = "nothing failed, because nothing could be decided"
 
@@ -84,7 +84,7 @@ class AuditSummary:
     """The number of broken rules, and the number of reasons for unknown verdicts."""
 
     @property
-    def n_contents(self) -> int:
+    def n_distinct_drives(self) -> int:
         """The number of drives; logs with the same content count once."""
         return self.n_drives - self.copies - self.copies_not_judged
 
@@ -106,7 +106,7 @@ class AuditSummary:
 
     def file_content(self) -> dict[str, Any]:
         """Return the content of `summary.json`: name -> value."""
-        return {_KEY_IN_FILE.get(name, name): value for name, value in vars(self).items()}
+        return {_KEY_IN_SUMMARY_FILE.get(name, name): value for name, value in vars(self).items()}
 
     def plus(self, second: AuditSummary) -> AuditSummary:
         """Return the sums of both summaries, without the counts that only a whole audit has."""
@@ -166,11 +166,11 @@ class AuditSummary:
 
     def _reason_of_exit_not_judged(self) -> str:
         if lost := self.n_refused + self.quarantined - self.copies_not_judged:
-            return f"{lost} of {plural(self.n_contents, 'drive')} could not be judged"
+            return f"{lost} of {plural(self.n_distinct_drives, 'drive')} could not be judged"
         if self.beyond_limits:
             return f"{plural(self.beyond_limits, 'verdict')} in error: exceeded its limits"
         if self.off_map:
-            return f"the map does not fit {self.off_map} of {plural(self.n_contents, 'drive')}"
+            return f"the map does not fit {self.off_map} of {plural(self.n_distinct_drives, 'drive')}"
         if self.missing_parts:
             return f"parts have not ended: {name_list(self.missing_parts)}"
         return self.undecided or (
@@ -203,7 +203,7 @@ def logs_with_flag(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
 def summary_of_all_drives(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return the summary of all drives with receipts. `n_reused`: drives that had a result before this run."""
     create_counted_views(con)
-    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
     broken, contacts, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")

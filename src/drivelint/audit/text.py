@@ -37,7 +37,7 @@ def _summary_lines(
     audit_summary: AuditSummary, out: str, code: ExitCode, gate_lines: Iterable[str], *, fail_on: str, gate_reason: str
 ) -> Iterator[str]:
     n_refused = audit_summary.n_refused - audit_summary.copies_not_judged
-    yield f"{plural(audit_summary.n_contents, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
+    yield f"{plural(audit_summary.n_distinct_drives, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
     states = (
         f"{audit_summary.n_judged - audit_summary.copies} judged",
         f"{n_refused} refused" if n_refused else "",
@@ -58,7 +58,7 @@ def _summary_lines(
         )
         yield f"INCOMPLETE: these parts have not ended: {', '.join(audit_summary.missing_parts)}: {of}run the same commands again"
     elif audit_summary.n_asked is not None and audit_summary.n_asked != audit_summary.n_drives:
-        yield f"asked for: {plural(audit_summary.n_asked, 'log')}{_count_difference_reasons(audit_summary)}"
+        yield f"asked for: {plural(audit_summary.n_asked, 'log')}{_reasons_for_count_difference(audit_summary)}"
     if audit_summary.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
@@ -153,7 +153,7 @@ def _contact_phrases(audit_summary: AuditSummary) -> str:
     return "".join(f"; {words} in {plural(n, 'drive')}" for words, n in numbers if n)
 
 
-def _count_difference_reasons(audit_summary: AuditSummary) -> str:
+def _reasons_for_count_difference(audit_summary: AuditSummary) -> str:
     parts = []
     if audit_summary.n_absent:
         parts.append(

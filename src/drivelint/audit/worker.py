@@ -23,7 +23,7 @@ from drivelint.engine.apart import judge_and_refuse_faulty
 from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
@@ -53,7 +53,7 @@ class Judge:
 
     def __init__(self, settings: JudgeSettings) -> None:
         self._stack = ExitStack()
-        memory = DEFAULT_MEMORY if settings.memory is None else settings.memory
+        memory = DEFAULT_MEMORY_BYTES if settings.memory is None else settings.memory
         self._con = self._stack.enter_context(store.workspace(memory))
         self._con.execute("SET threads=1")
         rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
@@ -79,14 +79,14 @@ class Judge:
             receipts = self._judge_drives(task, open_store(task.dest))
         self._n_tasks += 1
         if self._n_tasks % TASKS_PER_RELEASE == 0:
-            self._memory.release()
+            self._memory.release_unused_memory()
         return receipts
 
     def _judge_drives(self, task: Task, results: ResultStore) -> list[Receipt]:
         receipts: list[Receipt] = []
         read: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
         for drive in task.drives:
-            key, found = self._read_drive(drive, task.run_id, results)
+            key, found = self._find_receipt_or_read_drive(drive, task.run_id, results)
             if isinstance(found, Receipt):
                 receipts.append(found)
             elif key in read:  # the same log twice in one task is judged once
@@ -105,7 +105,7 @@ class Judge:
             receipts += self._judge_distinct_drives(part, results)
         return receipts
 
-    def _read_drive(
+    def _find_receipt_or_read_drive(
         self, drive: AuditDrive, run_id: str, results: ResultStore
     ) -> tuple[str, Receipt | Drive | RefusedLog]:
         """Return the key of a drive, and its receipt if one exists, else the drive that was read or the refusal of its log."""
@@ -148,7 +148,7 @@ class Judge:
         for table in store.tables_of_lifetime("run"):
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
-        self._session.forget_judged()
+        self._session.forget_judged_logs()
         drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
         refusals: list[RefusedLog] = []
         if drives:
@@ -176,7 +176,9 @@ class Judge:
             for table, of in marked.items():
                 rows[table].append(of)
             receipts.append(self._receipt_of_rows(key, drive, marked))
-        return write_batch(results, {table: pa.concat_tables(of) for table, of in rows.items()}, receipts)
+        return write_batch_and_return_valid_receipts(
+            results, {table: pa.concat_tables(of) for table, of in rows.items()}, receipts
+        )
 
     def _receipt_of_rows(self, key: str, drive: AuditDrive, rows: Mapping[str, pa.Table]) -> Receipt:
         return Receipt(
@@ -265,7 +267,9 @@ def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
     return whole.hexdigest()
 
 
-def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Sequence[Receipt]) -> list[Receipt]:
+def write_batch_and_return_valid_receipts(
+    results: ResultStore, rows: Mapping[str, pa.Table], receipts: Sequence[Receipt]
+) -> list[Receipt]:
     """Write one file per table, then the receipt of each drive. Return the receipts that are valid.
 
     If another worker has already written the receipt of a drive, that receipt is valid. Errors: `OutputError`; `DriveLintError` if its rows

@@ -197,7 +197,7 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
     if all(result.ok for result in results):  # else judging them together gives no new information
-        mixed, codes = run_merged_cases(rule, cases)
+        mixed, codes = first_problem_and_reason_codes_of_merged_cases(rule, cases)
         never = unused_reasons_message(rule, codes)
         results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
     problem = coverage_problem(cases)
@@ -286,7 +286,7 @@ def first_unexpected_merged_case(
     return next(((case, message) for case, rows in found if (message := outcome_difference(case, rows))), None)
 
 
-def run_merged_cases(
+def first_problem_and_reason_codes_of_merged_cases(
     rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
 ) -> tuple[str, set[str]]:
     """Judge all cases of a rule in one database; return the first problem ('' for none), and all reason codes.

@@ -37,7 +37,7 @@ _CHANGED_FILES_CHECK_PERIOD_S: Final = 0.5
 """The time between two checks of `repeat_tests_on_changes` for changed files."""
 
 
-def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
+def write_new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
     """Write a small runnable rule of this kind and its cases into `<root>/<pack>/`, for an author to edit.
 
     Return both paths. Errors: `UsageError` if the id is not valid or belongs to a shipped rule, or if one of the files exists.

@@ -46,24 +46,24 @@ class MutationResult(NamedTuple):
     problem: str = ""
 
     @property
-    def noticed(self) -> int:
+    def n_noticed(self) -> int:
         """The number of mutants that at least one case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property
-    def unlisted(self) -> tuple[str, ...]:
+    def unlisted_survivors(self) -> tuple[str, ...]:
         """The survivors that are not listed."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
 
     @property
-    def stale(self) -> tuple[str, ...]:
+    def stale_listed_faults(self) -> tuple[str, ...]:
         """Listed faults that a case notices, or that are not among the rule's mutants."""
         return tuple(fault for fault in self.listed if fault not in self.survivors)
 
     @property
     def ok(self) -> bool:
         """Whether there is no problem, no stale entry, and, for a stable rule, no unlisted survivor."""
-        return not (self.problem or self.stale or (self.stable and self.unlisted))
+        return not (self.problem or self.stale_listed_faults or (self.stable and self.unlisted_survivors))
 
 
 class _ListedSurvivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -88,18 +88,18 @@ def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResu
 def noticed_share(results: Sequence[MutationResult]) -> float:
     """Return the share of the mutants of stable rules that at least one case noticed."""
     n = sum(result.n for result in results if result.stable)
-    return sum(result.noticed for result in results if result.stable) / n if n else 1.0
+    return sum(result.n_noticed for result in results if result.stable) / n if n else 1.0
 
 
 def result_text(result: MutationResult) -> str:
     """Return the result as text: one line, and one more for each unlisted survivor and stale entry."""
     draft = "" if result.stable else " (not stable yet: it may have survivors)"
-    noticed = f"{result.noticed} of {result.n} mutants noticed{draft}"
+    noticed = f"{result.n_noticed} of {result.n} mutants noticed{draft}"
     return "\n".join(
         [
             f"{'ok  ' if result.ok else 'FAIL'} {result.rule_id}: {result.problem or noticed}",
-            *(f"     no case notices: {fault}" for fault in result.unlisted),
-            *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in result.stale),
+            *(f"     no case notices: {fault}" for fault in result.unlisted_survivors),
+            *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in result.stale_listed_faults),
         ]
     )
 
@@ -111,7 +111,7 @@ def summary_line(results: Sequence[MutationResult]) -> str:
     stable = [result for result in results if result.stable]
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"
-    n, noticed = sum(result.n for result in stable), sum(result.noticed for result in stable)
+    n, noticed = sum(result.n for result in stable), sum(result.n_noticed for result in stable)
     return f"{plural(len(stable), 'stable rule')}: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
 
 

@@ -56,7 +56,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def restricted_conditions(self) -> dict[str, tuple[str, ...]]:
         """Return condition -> allowed values, for the conditions that restrict the rule."""
-        return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
+        return {name: getattr(self, name) for name in conditions.RULE_CONDITION_VALUES if getattr(self, name)}
 
     @property
     def has_speed_limit_condition(self) -> bool:
@@ -66,7 +66,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT_TAG: Final = "contact"
 """Tag of the rules whose findings are contacts, found from touching boxes or from the speeds."""
-STANDING_TAG: Final = "standing"
+JUDGES_STANDING_EGO_TAG: Final = "standing"
 """Tag of the rules that also judge an ego that never moves."""
 EXCUSABLE_RULE_TAG: Final = "excuses"
 """Tag of the rules that may be kept although their title is false. The hypothesis states the excuse, such as overtaking."""
@@ -120,7 +120,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Reason code -> its text, for codes that only this rule gives by the macro `why`."""
 
 
-_STRUCT_OF_TABLE: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
+_STRUCT_OF_HEADER_TABLE: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
 
 
 def json_schema() -> dict[str, Any]:
@@ -161,7 +161,7 @@ def _rule_error(error: msgspec.ValidationError, text: str, where: str) -> RuleEr
     if not unknown:
         return RuleError(f"{where}:{line_of_key(text, keys)}: header: {message}")
     key = unknown[1]
-    known = _STRUCT_OF_TABLE.get(re.split(r"\W", path)[0], Header)
+    known = _STRUCT_OF_HEADER_TABLE.get(re.split(r"\W", path)[0], Header)
     nearest = hint(key, known.__struct_fields__)
     line = line_of_key(text, f"{keys}.{key}" if keys else key)
     return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")

@@ -36,7 +36,7 @@ class RequiredValueParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     parts: dict[str, str]
 
     @property
-    def keys(self) -> tuple[str, ...]:
+    def key_columns(self) -> tuple[str, ...]:
         """The key columns that the SELECT returns."""
         return tuple(key for key in KEY_COLUMNS if key in (check_query(self.sql, "parts").columns or ()))
 

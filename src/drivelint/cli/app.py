@@ -29,7 +29,7 @@ from drivelint.errors import (
     ExitCode,
     UsageError,
     describe_machine_error,
-    least_memory_limit_bytes,
+    memory_limit_of_process_bytes,
 )
 from drivelint.phrases import terminal_safe, terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings, read_settings
@@ -151,7 +151,7 @@ def convert(
     A clip is long enough that, judged alone, it has the same finding.
     """
     from drivelint import convert as converter
-    from drivelint.engine.memory import DEFAULT_MEMORY
+    from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 
     request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
     if (clip is None) is not (folder is None):
@@ -162,7 +162,7 @@ def convert(
         from drivelint.incident.clip import write_clip
 
         name, result = clip, folder
-        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY))
+        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY_BYTES))
     else:
         written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
@@ -184,7 +184,7 @@ app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 
 
-OBJECTS_BEFORE_COLLECTION: Final = 50_000
+NEW_OBJECTS_BEFORE_GARBAGE_COLLECTION: Final = 50_000
 """New objects before a garbage collection. With the default of Python 3.11 and 3.12 (700), it takes 4 % of the time of short commands."""
 
 
@@ -192,14 +192,14 @@ def main() -> NoReturn:
     """Run the command line; for every mistake of a user, print one line on stderr and exit with its code."""
     from typer.exceptions import TyperException
 
-    streams.make_writable()
-    if (limit := least_memory_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
+    streams.make_stdout_and_stderr_writable()
+    if (limit := memory_limit_of_process_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
         _exit_with_error(
             f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL
         )
     block_pandas_import()
     ending_signals.install_handlers()
-    gc.set_threshold(OBJECTS_BEFORE_COLLECTION)
+    gc.set_threshold(NEW_OBJECTS_BEFORE_GARBAGE_COLLECTION)
     try:
         code = _app_with_command("".join(sys.argv[1:2]))(
             standalone_mode=False, default_map=_default_options_of_settings_file()
@@ -211,7 +211,7 @@ def main() -> NoReturn:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # a prefix from the library
-        _exit_with_error(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
+        _exit_with_error(f"{words} (see drivelint {_command_words_of_error(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
@@ -247,7 +247,7 @@ def _command_name(command: CommandInfo) -> str:
     return command.name or get_command_name(command.callback.__name__ if command.callback else "")
 
 
-def _command_words(error: Exception) -> str:
+def _command_words_of_error(error: Exception) -> str:
     """Return the words of the command in which the error occurred, each followed by a space; '' without a command."""
     about, words = getattr(error, "ctx", None), ""
     while about is not None and about.parent is not None:

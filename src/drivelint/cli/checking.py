@@ -161,7 +161,7 @@ def check(
 
     from drivelint.cli.receipts import StoredRunOfCheck
 
-    settings_file = _settings_file(quiet=quiet)
+    settings_file = _find_and_print_settings_file(quiet=quiet)
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
     receipts = StoredRunOfCheck(arguments, day, settings_file)
@@ -215,7 +215,9 @@ def check(
 
         try:
             with receipts.record_inputs():
-                settings = _with_logs_of_manifests(replace(settings, out=work), are_results_packed=pack is not None)
+                settings = _with_manifests_replaced_by_logs(
+                    replace(settings, out=work), are_results_packed=pack is not None
+                )
                 gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
                     lambda: _judge(
@@ -248,7 +250,7 @@ def check(
     raise typer.Exit(code)
 
 
-def _settings_file(*, quiet: bool) -> Path | None:
+def _find_and_print_settings_file(*, quiet: bool) -> Path | None:
     """Return the settings file that applies, and print its name unless the run is quiet."""
     file = find_settings()
     if file is not None and not quiet:
@@ -256,7 +258,7 @@ def _settings_file(*, quiet: bool) -> Path | None:
     return file
 
 
-def _with_logs_of_manifests(settings: CheckOptions, *, are_results_packed: bool) -> CheckOptions:
+def _with_manifests_replaced_by_logs(settings: CheckOptions, *, are_results_packed: bool) -> CheckOptions:
     """Return the settings with manifests replaced by the logs that they name. Errors: `UsageError`."""
     if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
         return settings

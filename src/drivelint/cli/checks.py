@@ -28,7 +28,7 @@ def write_report_of_check(folder: Path, to: str, base_url: str | None) -> None:
         raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
     name, render = REPORT_FORMATS[to]
     result = load_result(folder)
-    warn_of_partial(folder, result)
+    warn_of_partial_result(folder, result)
     add_file(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
     typer.echo(terminal_safe_line(str(folder / name)))
 
@@ -59,8 +59,8 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
     earlier, later = load_result(base), load_result(new)
     if format_ == "text":
         earlier, later = result_on_one_line(earlier), result_on_one_line(later)
-    warn_of_partial(base, earlier)
-    warn_of_partial(new, later)
+    warn_of_partial_result(base, earlier)
+    warn_of_partial_result(new, later)
     least = later.fail_on if fail_on is None else fail_on
     difference, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
     if format_ == "json":
@@ -74,7 +74,7 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
     raise typer.Exit(int(descriptions.exit_code(difference, failing, least)))
 
 
-def warn_of_partial(folder: Path, result: Result) -> None:
+def warn_of_partial_result(folder: Path, result: Result) -> None:
     """Print a warning on stderr if a result is from an interrupted run."""
     if result.interrupted:
         from drivelint.result.model import interruption_sentence

@@ -95,16 +95,16 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
     return progress_bar() if sys.stderr.isatty() else note_printer()
 
 
-def _inert_console_class() -> type[Console]:
+def _console_class_without_control_sequences() -> type[Console]:
     """Return a console class that removes terminal control sequences from text, so that only rich's styles control the terminal."""
     from rich.console import Console
 
-    class InertConsole(Console):
+    class ConsoleWithoutControlSequences(Console):
         def render(self, *args: Any, **options: Any) -> Iterator[Segment]:
             for segment in super().render(*args, **options):
                 yield segment if segment.control else segment._replace(text=terminal_safe(segment.text))
 
-    return InertConsole
+    return ConsoleWithoutControlSequences
 
 
 def print_rich(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
@@ -118,7 +118,9 @@ def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft
     `content`: a renderable, or a function from the width to a renderable.
     """
     terminal = sys.stdout.isatty()
-    console = _inert_console_class()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    console = _console_class_without_control_sequences()(
+        width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False
+    )
     with console.capture() as captured:
         console.print(content(console.width) if callable(content) else content, soft_wrap=soft_wrap)
     if terminal:

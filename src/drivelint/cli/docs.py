@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from drivelint.guide.site import Command
 
-SETTINGS_SCHEMA: Final = "settings-schema"
+SETTINGS_SCHEMA_TOPIC: Final = "settings-schema"
 """The topic that prints the JSON schema of `drivelint.toml`."""
 
-HEADER_SCHEMA: Final = "header-schema"
+HEADER_SCHEMA_TOPIC: Final = "header-schema"
 """The topic that prints the JSON schema of a rule's header."""
 
 
@@ -65,12 +65,12 @@ def docs(
             "drivelint docs --html DIR writes all as a site",
             err=True,
         )
-    elif topic == SETTINGS_SCHEMA:
+    elif topic == SETTINGS_SCHEMA_TOPIC:
         from drivelint.cli.setting_options import settings_schema
 
         root: Any = ctx.find_root().command
         typer.echo(settings_schema(root.commands["check"].params), nl=False)
-    elif topic == HEADER_SCHEMA:
+    elif topic == HEADER_SCHEMA_TOPIC:
         from drivelint.catalogue import json_schema
 
         typer.echo(json.dumps(json_schema(), indent=2))

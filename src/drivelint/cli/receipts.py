@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _CHECK_OPTIONS_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
-_FILES_WITHOUT_OPTION: Final = (SETTINGS_FILE, "proj.ini")
+_INPUT_FILES_NAMED_BY_NO_OPTION: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
 _SUBFOLDERS_OF_OUTPUTS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
 _REPEATED_RESULT_NOTE: Final = (
@@ -127,7 +127,7 @@ class StoredRunOfCheck:
         if self._key is None:
             yield
             return
-        with record_inputs(self._is_output, [*_FILES_WITHOUT_OPTION, *self._named]) as self._recorder:
+        with record_inputs(self._is_output, [*_INPUT_FILES_NAMED_BY_NO_OPTION, *self._named]) as self._recorder:
             yield
 
     def store_receipt(

@@ -211,7 +211,7 @@ def explain(
         MeasurementErrors(position, time, of_map, samples, seed),
         option_values.parse_memory(memory),
     )
-    checks.warn_of_partial(folder, load_result(folder))
+    checks.warn_of_partial_result(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
         typer.echo(terminal_safe_json(to_json(found)))

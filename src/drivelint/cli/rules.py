@@ -77,7 +77,7 @@ def new(
     """
     from drivelint.casefile import commands
 
-    for file in commands.new_rule(rule_id, folder, kind):
+    for file in commands.write_new_rule(rule_id, folder, kind):
         typer.echo(file)
     typer.echo(f"Edit both, then: drivelint rules test {folder} --rules {rule_id}", err=True)
 

@@ -47,7 +47,7 @@ def _error_of_stdout(error: OSError) -> Exception:
     return StdoutError(f"stdout cannot be written: {error.strerror}")
 
 
-def make_writable() -> None:
+def make_stdout_and_stderr_writable() -> None:
     """Make stdout and stderr writable even if the caller closed them: output to a closed stream is discarded.
 
     Also removes a variable COLUMNS of 0, which some programs set: the width is then unknown.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.ego import ALL_EGOS, asks_for_all
+from drivelint.drive.ego import ALL_EGOS, asks_for_all_egos
 from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.drive.order import MAX_GAP_PERIODS, UNKNOWN_CODE, sorted_states
 from drivelint.drive.trace import EGO_ABSENT_CHECK, QualityFinding, States
@@ -34,9 +34,9 @@ LEAST_ABSENCE_NS: Final = 250_000_000
 """Shorter holes are clock jitter, as odometry at 100 Hz has; this is 2.5 periods of 10 Hz, the usual sampling rate in this field."""
 LONGEST_FRAME_STEP_NS: Final = 1_000_000_000
 """Frames further apart than this are not successive frames of one recording."""
-LEAST_ADDED_STEP_NS: Final = 2_000_000
+LEAST_TIME_BETWEEN_ADDED_STATES_NS: Final = 2_000_000
 """The least time between states that are added between frames."""
-ASSUMED_PERIOD_NS: Final = 100_000_000
+ASSUMED_EGO_PERIOD_NS: Final = 100_000_000
 """The sampling period that is assumed for an ego with fewer than two states."""
 
 
@@ -55,7 +55,7 @@ class Absence(NamedTuple):
     of_track: bool
 
     @property
-    def limited_stretches_ns(self) -> tuple[Times, Times]:
+    def stretches_within_log_or_track_ns(self) -> tuple[Times, Times]:
         """Return the starts and ends of the stretches (n), limited to the log or the track."""
         return np.maximum(self.since_ns, self.first_ns), np.minimum(self.until_ns, self.last_ns)
 
@@ -72,7 +72,7 @@ def effective_ego_option(recording: Recording, ego_option: str | None) -> str | 
     return ego_option
 
 
-def recorder_egos(recording: Recording) -> list[str]:
+def egos_with_recorder(recording: Recording) -> list[str]:
     """Return the egos that carry the recorder: those that the log or its mapping names, without those that a user had chosen."""
     picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN_CHECK}
     among_all = [finding.actor_id for finding in recording.findings if finding.check_id == ALL_EGOS_CHOSEN_CHECK]
@@ -83,8 +83,8 @@ def recorder_egos(recording: Recording) -> list[str]:
 
 def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
     """Return the absences of the recorder's own egos, or of the ego that the user chooses (states not yet cleaned)."""
-    states, own = recording.states, recorder_egos(recording)
-    expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
+    states, own = recording.states, egos_with_recorder(recording)
+    expected = own if ego_option is None or asks_for_all_egos(ego_option, states.ids) else [ego_option]
     absences_of_egos = []
     for name in expected:
         t_ns = _times_with_position(states, name)
@@ -128,7 +128,7 @@ def _absence_of_actor(
     """Return the absence of an actor with positions at these times within a span; holes that are clock jitter do not count."""
     first, last = span_ns
     steps = np.diff(t_ns)
-    period = max(int(np.median(steps)), 1) if len(steps) else ASSUMED_PERIOD_NS
+    period = max(int(np.median(steps)), 1) if len(steps) else ASSUMED_EGO_PERIOD_NS
     # 1 ns outside the span, so that a stretch at either end includes the end itself
     edges = np.r_[first - 1, t_ns, last + 1]
     least = np.full(len(edges) - 1, max(MAX_GAP_PERIODS * period, LEAST_ABSENCE_NS))
@@ -186,7 +186,7 @@ def _times_to_fill(absence: Absence, states: States, ego_times_ns: Times, frames
     apart = np.diff(times)
     wide = np.flatnonzero((apart > MAX_GAP_PERIODS * period) & (apart <= LONGEST_FRAME_STEP_NS) & (np.diff(of) == 0))
     if len(wide) > len(times) / 2:
-        step = max(period, LEAST_ADDED_STEP_NS)
+        step = max(period, LEAST_TIME_BETWEEN_ADDED_STATES_NS)
         between = [np.arange(times[k] + step, times[k + 1] - step // 2, step) for k in wide]
         times = np.sort(np.concatenate([times, *between]))
     beside = np.searchsorted(ego_times_ns, times - half)
@@ -199,7 +199,7 @@ def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[Qu
     start = int(states.t_ns.min())
     findings = []
     for absence in ego_absences:
-        begins, ends = absence.limited_stretches_ns
+        begins, ends = absence.stretches_within_log_or_track_ns
         lost_ns, of_ns = int((ends - begins).sum()), absence.last_ns - absence.first_ns
         until = "the end" if ends[0] == absence.last_ns else f"{(ends[0] - start) / 1e9:.3f} s"
         when = f"from {(begins[0] - start) / 1e9:.3f} s to {until}"
@@ -228,10 +228,10 @@ def without_ego_choices(findings: Sequence[QualityFinding]) -> list[QualityFindi
 
 def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
     """Return a finding, with the length of the track, if the user chooses another ego than the recorder's (states not yet cleaned)."""
-    own, states = recorder_egos(recording), recording.states
+    own, states = egos_with_recorder(recording), recording.states
     if ego_option is None or ego_option in own:
         return []
-    if asks_for_all(ego_option, states.ids):
+    if asks_for_all_egos(ego_option, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
         names: list[str | None] = [*own] if own else [None]
         return [QualityFinding(ALL_EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]

@@ -24,12 +24,12 @@ ELONGATED_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "
 """Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
 MOST_WIDTH_PER_LENGTH: Final = 1.1
 """A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
-LEAST_DIRECTED_MPS: Final = 2.0
+LEAST_SPEED_WITH_DIRECTION_MPS: Final = 2.0
 """Above this speed, the velocity of a box shows its direction of motion."""
 LEAST_MOVING_SAMPLES: Final = 5
-ALONG_HEADING_RAD: Final = np.deg2rad(30.0)
+MOST_ANGLE_ALONG_HEADING_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
-LEAST_SIZES_M: Final = {
+LEAST_LENGTH_AND_WIDTH_M: Final = {
     "car": (1.5, 0.8),
     "van": (2.0, 1.0),
     "truck": (2.5, 1.2),
@@ -40,7 +40,7 @@ LEAST_SIZES_M: Final = {
 }
 """Class -> the least length and width (m) of such a vehicle: those of the smallest models, minus a detector's error of decimetres. There
 is no upper limit per class: a lorry that is recorded as a car has the right size."""
-MOST_SIZES_M: Final = (60.0, 8.0)
+MOST_LENGTH_AND_WIDTH_M: Final = (60.0, 8.0)
 """Length and width (m) that no road user exceeds."""
 LARGEST_SIZE_SPREAD_M = 0.05
 """If the sizes of a track differ by more than this, they are estimates, and a finding reports it."""
@@ -137,21 +137,21 @@ def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
 def _actors_moving_along_heading(states: States) -> list[str]:
     """Return the ids of the actors that move along their heading, forwards or backwards."""
     vx, vy = states.velocity
-    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > LEAST_DIRECTED_MPS)
+    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > LEAST_SPEED_WITH_DIRECTION_MPS)
     off = np.abs(wrap_angles(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
     n, n_along = (
         np.bincount(states.actor[rows], minlength=len(states.ids))
-        for rows in (moving, moving & (off < ALONG_HEADING_RAD))
+        for rows in (moving, moving & (off < MOST_ANGLE_ALONG_HEADING_RAD))
     )
     return [states.ids[i] for i in np.flatnonzero((n >= LEAST_MOVING_SAMPLES) & (2 * n_along > n))]
 
 
 def _implausible_size_findings(states: States, actors: Actors) -> list[QualityFinding]:
     bad = np.zeros(len(actors.ids), np.bool_)
-    least = np.array([LEAST_SIZES_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
-    known = np.array([kind in LEAST_SIZES_M for kind in actors.classes], np.bool_)
+    least = np.array([LEAST_LENGTH_AND_WIDTH_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
+    known = np.array([kind in LEAST_LENGTH_AND_WIDTH_M for kind in actors.classes], np.bool_)
     for axis, name in enumerate(("length_m", "width_m")):
-        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_SIZES_M[axis]))
+        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_LENGTH_AND_WIDTH_M[axis]))
     ids = _actor_ids(actors, bad)
     if not ids:
         return []

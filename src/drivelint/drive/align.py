@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 DIFFERENT_RATE_FACTOR: Final = 1.5
 """Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
-LEAST_SHARE_AT_EGO_STEPS: Final = 0.75
+LEAST_SHARE_OF_EGO_STEPS_WITH_SAMPLE: Final = 0.75
 """A track with samples at this share of the ego's steps between its first and its last sample is not interpolated."""
 _POSITION_AND_VELOCITY_COLUMNS: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
-def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
+def align_to_ego_steps(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
     """Interpolate tracks with other sampling times to the steps of the only ego; return the states and a finding about it."""
     if len(egos) != 1 or egos[0] not in states.ids:
         return states, []
@@ -40,7 +40,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     kept_rows, aligned_tracks, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
-        track_period = _period_to_align_ns(states.t_ns[span], grid, period)
+        track_period = _period_of_track_to_align_ns(states.t_ns[span], grid, period)
         if track_period is None:
             continue
         # a track with a shorter period also keeps its own samples; every track keeps its samples before and after the ego's steps
@@ -59,7 +59,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     return sorted_states(States.concatenate([states.take(kept_rows), *aligned_tracks])), [finding]
 
 
-def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) -> int | None:
+def _period_of_track_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) -> int | None:
     """Return the sampling period of a track that has to be aligned.
 
     None: its samples are at the ego's steps (but for a few), fewer than two, or too far apart.
@@ -75,7 +75,7 @@ def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) 
         return None
     steps = ego_steps_ns[first : np.searchsorted(ego_steps_ns, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= LEAST_SHARE_AT_EGO_STEPS * len(steps):  # also true if the ego has no step during the track
+    if shared >= LEAST_SHARE_OF_EGO_STEPS_WITH_SAMPLE * len(steps):  # also true if the ego has no step during the track
         return None
     return own_period if own_period > DIFFERENT_RATE_FACTOR * ego_period_ns or shared < 0.5 * n else None
 

@@ -149,12 +149,12 @@ def _velocity_findings(states: States, step: Steps, jump: Mask) -> list[QualityF
     Whether units or frame are wrong is decided over one second, where position noise is small against the distance.
     """
     wrong = np.zeros(len(states), np.bool_)
-    wrong[1:] = _exceeds_tolerance(*_speeds_vs_positions(states, step, jump, 1))
+    wrong[1:] = _exceeds_velocity_tolerance(*_recorded_speeds_vs_speeds_from_positions(states, step, jump, 1))
     second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
     for n_steps in {second: None, 1: None}:
-        error, speed, step_speed, usable = _speeds_vs_positions(states, step, jump, n_steps)
+        error, speed, step_speed, usable = _recorded_speeds_vs_speeds_from_positions(states, step, jump, n_steps)
         moving = usable & (np.maximum(step_speed, speed) > YAW_CHECK_LEAST_MPS)
-        off = moving & _exceeds_tolerance(error, speed, step_speed, usable)
+        off = moving & _exceeds_velocity_tolerance(error, speed, step_speed, usable)
         n, n_moving = int(off.sum()), int(moving.sum())
         if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
@@ -170,12 +170,14 @@ def _velocity_findings(states: States, step: Steps, jump: Mask) -> list[QualityF
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
-def _exceeds_tolerance(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
-    """Return the mask of the steps, as returned by `_speeds_vs_positions`, whose error exceeds the tolerance."""
+def _exceeds_velocity_tolerance(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
+    """Return the mask of the steps, as returned by `_recorded_speeds_vs_speeds_from_positions`, whose error exceeds the tolerance."""
     return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(step_speed, speed))
 
 
-def _speeds_vs_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
+def _recorded_speeds_vs_speeds_from_positions(
+    states: States, step: Steps, jump: Mask, n_steps: int
+) -> tuple[Floats, Floats, Floats, Mask]:
     """Compare the mean velocity from positions over every `n_steps` steps with the mean of the recorded velocities, in m/s.
 
     Returns, indexed by first row (n - n_steps): the difference, the mean speed, the speed from positions, and the mask of the intervals

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import UNKNOWN_CODE, repetition_mask_and_rows, value_changes_by_column
+from drivelint.drive.order import UNKNOWN_CODE, repetition_mask_and_index_without_repetitions, value_changes_by_column
 from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask, Times
 
-LEAST_RUN_STATES: Final = 10
+LEAST_STATES_OF_CLOCK_RUN: Final = 10
 """At least this many successive states of an actor with ascending times are a run of the clock; fewer are late messages."""
 LEAST_INTERLEAVED_STATES: Final = 5
 """At least this many states of one run that are in time between states of another are not late messages."""
-HOLE_FACTOR: Final = 1.5
+LEAST_HOLE_PER_MEDIAN_STEP: Final = 1.5
 """A step longer than the median step by this factor is a hole, which late messages may fill."""
 
 
@@ -70,7 +70,7 @@ def _spans_covered_twice(states: States, run: Times) -> dict[tuple[int, int], tu
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]
     tracks: dict[int, list[Indices]] = {}
-    for i in np.flatnonzero(end - begin >= LEAST_RUN_STATES):
+    for i in np.flatnonzero(end - begin >= LEAST_STATES_OF_CLOCK_RUN):
         tracks.setdefault(int(states.actor[by[begin[i]]]), []).append(by[begin[i] : end[i]])
     spans: dict[tuple[int, int], tuple[int, int]] = {}
     for own in tracks.values():
@@ -89,7 +89,9 @@ def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
     steps = np.diff(run_ns)
     before = np.clip(np.searchsorted(run_ns, other_run_ns), 1, len(run_ns) - 1) - 1
     inside = (
-        (other_run_ns >= run_ns[0]) & (other_run_ns <= run_ns[-1]) & (steps[before] <= HOLE_FACTOR * np.median(steps))
+        (other_run_ns >= run_ns[0])
+        & (other_run_ns <= run_ns[-1])
+        & (steps[before] <= LEAST_HOLE_PER_MEDIAN_STEP * np.median(steps))
     )
     return int(inside.sum())
 
@@ -100,7 +102,7 @@ def _equal_repetitions(states: States, rows: Mask) -> Mask:
     chosen_rows = np.flatnonzero(rows)
     chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]
     ordered = states.take(chosen_rows)
-    again, of = repetition_mask_and_rows(ordered)
+    again, of = repetition_mask_and_index_without_repetitions(ordered)
     several = np.bincount(of) > 1
     other = again & np.any(list(value_changes_by_column(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 DRIVE_CONDITION_VALUES: Final = {name: words_of_vocabulary(name) for name in words_of_vocabulary("condition")}
 """Condition of a drive -> its words; includes `engaged`: whether the automated driver drives."""
-CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
+RULE_CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
 """Condition -> a text on what its words mean."""

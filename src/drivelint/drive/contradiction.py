@@ -2,8 +2,8 @@
 
 Plausible positions take precedence over velocities and headings:
 
-* If position and velocity differ by far (`MISMATCH_M`, `SINGLE_STEP_MISMATCH_M`), the whole state is unknown: position, heading and
-  velocity. For example, the position stands still although the velocity is not 0.
+* If position and velocity differ by far (`POSITION_VELOCITY_MISMATCH_M`, `SINGLE_STEP_MISMATCH_M`), the whole state is unknown: position,
+  heading and velocity. For example, the position stands still although the velocity is not 0.
 * If they differ by less, but for half a second (`STRETCH_MISMATCH_MPS`), the position is used and the velocity is unknown.
 * A heading opposite to the motion is turned round, unless the vehicle may be reversing. A heading across the motion is unknown, unless the
   vehicle may be sliding.
@@ -18,7 +18,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.arrays import wrap_angles
-from drivelint.drive.jumps import COUNT_OF_STATES_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
+from drivelint.drive.jumps import (
+    COUNT_OF_STATES_PREFIX,
+    LEAST_SPEED_WITH_MOTION_DIRECTION_MPS,
+    MOTION_COLUMNS,
+    NO_SPLIT,
+    SplitTracks,
+    set_unknown,
+)
 from drivelint.drive.order import integral_per_step, motion_over_steps, prefix_sums, steps_with_known_motion
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity import Tracklets, noise_of_samples_m
@@ -35,25 +42,25 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 
-MISMATCH_M: Final = 1.0
-MISMATCH_SHARE: Final = 0.15
+POSITION_VELOCITY_MISMATCH_M: Final = 1.0
+POSITION_VELOCITY_MISMATCH_SHARE: Final = 0.15
 """Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 % of the larger one. Noise of
 0.3 m and a velocity error of 10 % stay below that."""
 SINGLE_STEP_MISMATCH_M: Final = 2.0
 """A single step contradicts the velocities, whatever the next step does, if it differs by more than this: six times a noise of 0.3 m."""
-HALF_WINDOW_S: Final = 0.5
-DIRECTION_LEAST_M: Final = 0.4
-DIRECTION_LEAST_SHARE: Final = 0.5
+HALF_COMPARISON_WINDOW_S: Final = 0.5
+DIRECTION_LEAST_DISPLACEMENT_M: Final = 0.4
+DIRECTION_LEAST_SHARE_OF_DISTANCE: Final = 0.5
 """A motion has a direction if, within one second around it, the actor moves more than 0.4 m and half the distance at its speed."""
 FASTEST_REVERSING_MPS: Final = 8.0
 """The highest speed of reversing (29 km/h), except in the case of `FASTEST_REVERSE_START_MPS`."""
-FASTEST_CONTINUED_REVERSING_MPS: Final = 20.0
+FASTEST_REVERSING_BESIDE_FORWARD_MOTION_MPS: Final = 20.0
 FASTEST_REVERSE_START_MPS: Final = 3.0
 """Reversing may reach 20 m/s (72 km/h) if the log also shows forward motion, and the stretch of reversing starts or ends slower than
 3 m/s."""
-BACKWARDS_RAD: Final = np.deg2rad(150.0)
-SIDEWAYS_RAD: Final = np.deg2rad(30.0)
-SIDEWAYS_MPS: Final = 3.0
+LEAST_ANGLE_OF_BACKWARD_MOTION_RAD: Final = np.deg2rad(150.0)
+LEAST_ANGLE_OF_SIDEWAYS_MOTION_RAD: Final = np.deg2rad(30.0)
+LEAST_SPEED_OF_SIDEWAYS_MOTION_MPS: Final = 3.0
 """Above this speed, a heading more than 30 degrees off the motion is wrong or a slide; slip angles of a car are below 10 degrees."""
 HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
 MOST_TURN_IN_SLIDE_RAD: Final = np.deg2rad(45.0)
@@ -61,17 +68,17 @@ MOST_TURN_IN_SLIDE_RAD: Final = np.deg2rad(45.0)
 CLASSES_MOVING_ALONG_HEADING: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Classes of actors whose heading is the direction of their motion (None: unknown class). Pedestrians and animals can face any direction;
 objects have no front."""
-STRETCH_S: Final = 0.5
+VELOCITY_COMPARISON_STRETCH_S: Final = 0.5
 """The mean velocity over this time, or over two steps if that is longer, is compared with the displacement."""
 STRETCH_MISMATCH_MPS: Final = 0.8
 STRETCH_MISMATCH_SHARE: Final = 0.05
 """The tolerated difference: the velocity of a rear axle is up to 0.7 m/s off (1.4 m from the centre, 0.5 rad/s), a speedometer 5 %, a
 delayed filter 0.8 m/s."""
-TOLERANCE_SIGMAS: Final = 4.0
+POSITION_NOISE_SIGMAS_IN_TOLERANCE: Final = 4.0
 """The tolerance for a stretch includes this many standard deviations of the position noise."""
-LEAST_STEP_SHARE_IN_DIFFERENCE: Final = 0.75
+LEAST_SHARE_OF_DIFFERENCE_IN_ONE_STEP: Final = 0.75
 """If one step causes at least this share of the difference, the positions are wrong, not the velocity."""
-WHOLE_TRACK_SHARE: Final = 0.5
+MOST_CONTRADICTORY_SHARE_OF_TRACK: Final = 0.5
 """If more than this share of a track contradicts its velocities, the velocity is wrong as a whole, which `checks` reports."""
 ASSUMED_HALF_DIAGONAL_M: Final = 6.0
 """The half diagonal that is assumed for a box of unknown size."""
@@ -101,8 +108,8 @@ def remove_contradictions(
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_OF_STATES_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
-        findings += _overlap_findings(states, step, actors, each, split_tracks.old_id_by_id)
-    turned, sideways = _contradictory_headings(states, step, actors)
+        findings += _rejected_position_overlap_findings(states, step, actors, each, split_tracks.old_id_by_id)
+    turned, sideways = _backward_and_sideways_heading_samples(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     text = COUNT_OF_STATES_PREFIX + "the heading is opposite to the motion: the direction of motion is used"
     findings += states.findings(turned, "heading_turned", "warning", text)
@@ -113,7 +120,7 @@ def remove_contradictions(
     return findings
 
 
-def _overlap_findings(
+def _rejected_position_overlap_findings(
     states: States, step: Steps, actors: Actors, rejected_states: States, old_id_by_id: Mapping[str, str]
 ) -> list[QualityFinding]:
     """Return a finding for each actor with a rejected position at which its box may overlap the box of another actor."""
@@ -161,7 +168,8 @@ def _contradictory_positions(states: States, step: Steps) -> Mask:
     def is_contradiction(displacement: Floats, velocity_displacement: Floats, slack_m: Floats) -> Mask:
         fastest = np.maximum(np.hypot(*displacement), np.hypot(*velocity_displacement))
         wrong: Mask = (
-            np.hypot(*(displacement - velocity_displacement)) > MISMATCH_M + MISMATCH_SHARE * fastest + slack_m
+            np.hypot(*(displacement - velocity_displacement))
+            > POSITION_VELOCITY_MISMATCH_M + POSITION_VELOCITY_MISMATCH_SHARE * fastest + slack_m
         )
         return wrong
 
@@ -171,10 +179,10 @@ def _contradictory_positions(states: States, step: Steps) -> Mask:
     ends = np.ones(n + 1, np.bool_)  # at the end of a track, the one step beside the sample decides
     ends[1:-1] = alone | ~usable
     both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
-    moved = is_contradiction(went, led, slack + SINGLE_STEP_MISMATCH_M - MISMATCH_M)
+    moved = is_contradiction(went, led, slack + SINGLE_STEP_MISMATCH_M - POSITION_VELOCITY_MISMATCH_M)
     beside = both | np.r_[moved, False] | np.r_[False, moved]
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
-    first, last = _rows_half_second_around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
+    first, last = _first_and_last_rows_within_half_second(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
     def sum_half_second_around(values: Floats) -> Floats:
         sums = prefix_sums(values)
@@ -195,7 +203,7 @@ def _displacements_and_tolerance(states: States, step: Steps, usable: Mask) -> t
     return went, led, np.hypot(*slack)
 
 
-def _differences_per_step_m(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
+def _displacement_differences_per_step_m(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
     """Return by how much the displacements of positions and velocities differ in each step (n - 1), and the tolerance."""
     went, led, slack = _displacements_and_tolerance(states, step, usable)
     went -= led
@@ -207,21 +215,21 @@ def _may_velocities_drift(difference: Floats, step: Steps) -> bool:
 
     `difference` (2, n - 1): the displacement of the positions minus that of the velocities, per step.
     """
-    stride = max(1, round(HALF_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
+    stride = max(1, round(HALF_COMPARISON_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(difference, axis=1)[:, ::stride]
     # a one-second window spans at most three strides, so one of them has at least a third of its difference
-    return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
+    return bool((np.hypot(*np.diff(way, axis=1)) > POSITION_VELOCITY_MISMATCH_M / 3).any())
 
 
 def _contradictory_velocities(states: States, step: Steps) -> Mask:
     """Return the mask of the samples (n, in order, velocities complete) in stretches whose velocities contradict the positions."""
     n = len(states)
     mismatched = np.zeros(n, np.bool_)
-    k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
+    k = max(2, round(VELOCITY_COMPARISON_STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
         return mismatched
     usable = steps_with_known_motion(states, step)
-    alone, slack = _differences_per_step_m(states, step, usable)
+    alone, slack = _displacement_differences_per_step_m(states, step, usable)
     went, led, whole, span = motion_over_steps(states, step, usable, k)
     span = np.where(whole, span, np.nan)
     went /= span
@@ -232,11 +240,11 @@ def _contradictory_velocities(states: States, step: Steps) -> Mask:
     fastest = np.hypot(*went)
     del went, led
     allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
-    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < LEAST_STEP_SHARE_IN_DIFFERENCE * off * span)
+    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < LEAST_SHARE_OF_DIFFERENCE_IN_ONE_STEP * off * span)
     if not wrong.any():
         return mismatched
     sigma = noise_of_samples_m(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
-    wrong &= off > allowed + TOLERANCE_SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
+    wrong &= off > allowed + POSITION_NOISE_SIGMAS_IN_TOLERANCE * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
@@ -245,7 +253,7 @@ def _contradictory_velocities(states: States, step: Steps) -> Mask:
     wrong_by_actor, all_by_actor = (
         np.bincount(who, minlength=len(states.ids)) for who in (states.actor[mismatched], states.actor)
     )
-    many = wrong_by_actor > WHOLE_TRACK_SHARE * all_by_actor
+    many = wrong_by_actor > MOST_CONTRADICTORY_SHARE_OF_TRACK * all_by_actor
     return mismatched & ~many[states.actor]
 
 
@@ -255,9 +263,11 @@ def _sliding_max(values: Floats, width: int) -> Floats:
     return most
 
 
-def _rows_half_second_around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
+def _first_and_last_rows_within_half_second(
+    states: States, pieces: NDArray[np.integer], rows: Indices
+) -> tuple[Indices, Indices]:
     """Return for each of these rows the first and the last row of the same piece (`pieces`, n) within half a second of it."""
-    half = int(HALF_WINDOW_S * 1e9)
+    half = int(HALF_COMPARISON_WINDOW_S * 1e9)
     apart = np.diff(states.t_ns)
     # steps to another piece, backward steps and long steps are set to just over half a second, so that the sum does not overflow
     near = (np.diff(pieces) == 0) & (apart >= 0) & (apart <= half)
@@ -265,24 +275,26 @@ def _rows_half_second_around(states: States, pieces: NDArray[np.integer], rows: 
     return np.searchsorted(key, key[rows] - half), np.searchsorted(key, key[rows] + half, side="right") - 1
 
 
-def _rows_with_direction(states: States, rows: Mask) -> Mask:
-    """Return the mask of marked rows where the motion has a direction, as `DIRECTION_LEAST_SHARE` defines it."""
+def _rows_with_motion_direction(states: States, rows: Mask) -> Mask:
+    """Return the mask of marked rows where the motion has a direction, as `DIRECTION_LEAST_SHARE_OF_DISTANCE` defines it."""
     marked_rows = np.flatnonzero(rows)
-    first, last = _rows_half_second_around(states, states.actor, marked_rows)
+    first, last = _first_and_last_rows_within_half_second(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
     way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
     kept = rows.copy()
-    kept[marked_rows] = way > np.maximum(DIRECTION_LEAST_M, DIRECTION_LEAST_SHARE * speed * span)
+    kept[marked_rows] = way > np.maximum(
+        DIRECTION_LEAST_DISPLACEMENT_M, DIRECTION_LEAST_SHARE_OF_DISTANCE * speed * span
+    )
     return kept
 
 
-def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
+def _backward_and_sideways_heading_samples(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """Return the mask of samples with a heading opposite to the motion, and the mask of samples with a heading across it.
 
     A stretch of backward motion is real reversing if no forward motion adjoins it, the heading does not flip at its ends, and it is slower
-    than `FASTEST_REVERSING_MPS`. The limit is `FASTEST_CONTINUED_REVERSING_MPS` if the vehicle drives forwards with that heading before or
-    after, and the stretch starts or ends slowly on that side.
+    than `FASTEST_REVERSING_MPS`. The limit is `FASTEST_REVERSING_BESIDE_FORWARD_MOTION_MPS` if the vehicle drives forwards with that
+    heading before or after, and the stretch starts or ends slowly on that side.
 
     A stretch with the heading across the motion is a real slide if forward motion adjoins it, and the heading changes by at most
     `MOST_TURN_IN_SLIDE_RAD` per sample.
@@ -292,14 +304,16 @@ def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tupl
     in_line = np.array([kinds.get(name) in CLASSES_MOVING_ALONG_HEADING for name in states.ids], np.bool_)[states.actor]
     speed = np.hypot(vx, vy)
     off = np.abs(wrap_angles(yaw - np.arctan2(vy, vx)))
-    moving = in_line & (speed > MOVING_MPS) & np.isfinite(yaw)
-    backwards = moving & (off > BACKWARDS_RAD)
-    across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
+    moving = in_line & (speed > LEAST_SPEED_WITH_MOTION_DIRECTION_MPS) & np.isfinite(yaw)
+    backwards = moving & (off > LEAST_ANGLE_OF_BACKWARD_MOTION_RAD)
+    across = (
+        moving & (speed > LEAST_SPEED_OF_SIDEWAYS_MOTION_MPS) & (off > LEAST_ANGLE_OF_SIDEWAYS_MOTION_RAD) & ~backwards
+    )
     turn = np.where(step.same_actor, np.abs(wrap_angles(np.diff(yaw))), 0.0)
     nothing = np.zeros(n, np.bool_)
     if not (backwards.any() or across.any()):
         return nothing, nothing
-    backwards, across = _rows_with_direction(states, backwards), _rows_with_direction(states, across)
+    backwards, across = _rows_with_motion_direction(states, backwards), _rows_with_motion_direction(states, across)
     forwards = moving & ~backwards & ~across
     turned, sideways = nothing, nothing.copy()
     row = np.arange(n)
@@ -308,7 +322,7 @@ def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tupl
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
     turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]
 
-    def is_reversing_start(end: int, forward_row: int) -> bool:
+    def is_slow_end_beside_forward_motion(end: int, forward_row: int) -> bool:
         return bool(
             0 <= forward_row < n
             and states.actor[forward_row] == states.actor[end]
@@ -318,14 +332,15 @@ def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tupl
 
     for rows, out, most in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, MOST_TURN_IN_SLIDE_RAD)):
         turns = turn > most
-        for first, last in _row_runs(states, rows):
+        for first, last in _first_and_last_rows_of_runs(states, rows):
             seam = (first > 0 and step.same_actor[first - 1]), (last < n - 1 and step.same_actor[last])
             broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])
             beside = (seam[0] and forwards[first - 1]) or (seam[1] and forwards[last + 1])
             if out is turned:
                 fastest = (
-                    FASTEST_CONTINUED_REVERSING_MPS
-                    if is_reversing_start(first, went[first]) or is_reversing_start(last, goes[last])
+                    FASTEST_REVERSING_BESIDE_FORWARD_MOTION_MPS
+                    if is_slow_end_beside_forward_motion(first, went[first])
+                    or is_slow_end_beside_forward_motion(last, goes[last])
                     else FASTEST_REVERSING_MPS
                 )
                 real = speed[first : last + 1].max() < fastest and not broken and not beside
@@ -336,7 +351,7 @@ def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tupl
     return turned, sideways
 
 
-def _row_runs(states: States, rows: Mask) -> list[tuple[int, int]]:
+def _first_and_last_rows_of_runs(states: States, rows: Mask) -> list[tuple[int, int]]:
     """Return the first and the last row of each stretch of successive marked rows of one actor."""
     same = np.r_[False, (states.actor[1:] == states.actor[:-1]) & rows[:-1] & rows[1:]]
     first = np.flatnonzero(rows & ~same)

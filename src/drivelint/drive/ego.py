@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import EgoSize
 
 ALL_EGOS = "all"
-MOST_SIZE_DIFFERENCE_M: Final = 0.05
+MOST_UNREPORTED_SIZE_DIFFERENCE_M: Final = 0.05
 """A larger difference between the user's and the log's size is reported."""
 
 
-def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
+def asks_for_all_egos(ego_option: str | None, ids: Collection[str]) -> bool:
     """Return whether the user requests every motor vehicle as ego: the option is `all`, and no actor has the id `all`."""
     return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
@@ -43,7 +43,7 @@ def choose_egos(
     Errors: `TraceError` if a required ego is missing, or the log has no actor with the user's id.
     """
     ids = set(actors.ids)
-    if asks_for_all(ego_option, ids):
+    if asks_for_all_egos(ego_option, ids):
         return _every_motor_vehicle(path, actors)
     if ego_option is not None:
         if ego_option not in ids:
@@ -79,7 +79,7 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
         for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given
-            elif abs(has - given) > MOST_SIZE_DIFFERENCE_M:
+            elif abs(has - given) > MOST_UNREPORTED_SIZE_DIFFERENCE_M:
                 message = (
                     f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log "
                     f"states {has:g} m: the value of the log is used"

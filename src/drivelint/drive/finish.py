@@ -11,10 +11,14 @@ import pyarrow as pa
 from drivelint.arrays import words_of_codes, wrap_angles
 from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive import actors as actor_rows
-from drivelint.drive.align import align_to_ego
+from drivelint.drive.align import align_to_ego_steps
 from drivelint.drive.clock_restart import without_values_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
-from drivelint.drive.implausible.bodies import false_entry_findings, repeated_end_findings, same_body_findings
+from drivelint.drive.implausible.bodies import (
+    false_track_start_findings,
+    repeated_end_position_findings,
+    same_body_findings,
+)
 from drivelint.drive.implausible.motion import implausible_motion_findings
 from drivelint.drive.lost_time import LATEST_CREDIBLE_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
@@ -97,14 +101,14 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         findings += implausible_motion_findings(states, step, actors, derived_velocities=derived)
         findings += [
             *same_body_findings(states, actors, egos),
-            *false_entry_findings(states, step),
-            *repeated_end_findings(states, actors),
+            *false_track_start_findings(states, step),
+            *repeated_end_position_findings(states, actors),
         ]
     findings += _unknown_ego_light_findings(states, egos)
     missed = [each for each in missed if each.ego_id in egos]
     states = absence.with_unknown_ego_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
-    states, moved = align_to_ego(states, egos)
+    states, moved = align_to_ego_steps(states, egos)
     states = states if recorded is None else recorded.with_all_columns()
     tables = _trace_tables(identity, recording, options, states=states, actors=actors, egos=egos)
     tables["quality"] = _quality_table(identity.drive_id, [*findings, *moved], recording.format)
@@ -171,8 +175,8 @@ def _trace_tables(
             "indicator": words_of_codes(states.codes.get("indicator", unknown), INDICATORS),
             "brake_light": words_of_codes(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
         },
-        "signal_state": _distinct_columns(recording.signals, "signal_id", "t_ns", "state"),
-        "declared_event": _distinct_columns(
+        "signal_state": _columns_without_repeated_rows(recording.signals, "signal_id", "t_ns", "state"),
+        "declared_event": _columns_without_repeated_rows(
             with_headlight_events(recording.events, states), "t_ns", "actor_id", "event", "value"
         ),
         "drive_condition": [
@@ -272,7 +276,7 @@ def _log_row(
     }  # fmt: skip
 
 
-def _distinct_columns(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
+def _columns_without_repeated_rows(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
     """Return these columns of a reader's table, without repeated rows, sorted by the columns in the given order."""
     if rows is None:
         return dict.fromkeys(keys, ())

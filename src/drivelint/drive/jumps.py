@@ -26,21 +26,21 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 
-JUMP_M: Final = 3.0
+LEAST_JUMP_M: Final = 3.0
 JUMP_ACCELERATION_MPS2: Final = 10.0
 """A step is a jump if it differs by more than 3 m + 10 m/s2 dt2 from what the step before and the step after it predict. No tyre does
 that; a simulated full stop within one sample of 0.1 s does it only from more than 30 m/s."""
 LONGEST_OUTLIER_PIECE_S: Final = 2.0
 """Pieces of a track between two jumps are outliers if they are shorter than this; longer pieces are tracks of actors."""
-LARGEST_CORRECTION_M: Final = 10.0
+LARGEST_CORRECTION_ALONG_MOTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
-CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
+LARGEST_VELOCITY_CHANGE_AT_CORRECTION_MPS: Final = 3.0
 """A jump corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity changes
 by at most 3 m/s + `JUMP_ACCELERATION_MPS2` times the gap."""
-MOVING_MPS: Final = 1.0
+LEAST_SPEED_WITH_MOTION_DIRECTION_MPS: Final = 1.0
 """Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
-SAME_PLACE_M: Final = 0.01
+SAME_POSITION_TOLERANCE_M: Final = 0.01
 """Centres no further apart than this are at the same position."""
 COUNT_OF_STATES_PREFIX: Final = "{n} of {of} states ({ids}): "
 
@@ -71,7 +71,7 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
     unknown, pieces = _unknown_samples_and_pieces(states, jump_steps(states, step))
     text = COUNT_OF_STATES_PREFIX + "the position jumps: the states around the jump are unknown"
     findings = states.findings(unknown, "teleport", "warning", text)
-    alias = _split_ids_by_piece(states, pieces, kept_ids, findings)
+    alias = _give_ids_to_pieces_and_return_old_ids(states, pieces, kept_ids, findings)
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
@@ -97,7 +97,7 @@ def jump_steps(states: States, step: Steps) -> Mask:
     """
     way = np.diff(states.place)
     dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
-    limit = JUMP_M + JUMP_ACCELERATION_MPS2 * dt**2
+    limit = LEAST_JUMP_M + JUMP_ACCELERATION_MPS2 * dt**2
     far: Mask = step.continuous & (np.hypot(*way) > limit)
     rows = np.flatnonzero(far)
     if not len(rows):
@@ -150,19 +150,19 @@ def _can_be_one_track(states: States, last: int, first: int) -> bool:
     before, after = ((place[:, i] - place[:, i - 1]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
     way = place[:, first] - place[:, last]
     fastest = np.nan_to_num(np.hypot(*np.transpose([before, after]))).max()
-    if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_ACCELERATION_MPS2 * gap**2 / 2:
+    if np.hypot(*way) <= LEAST_JUMP_M + fastest * gap + JUMP_ACCELERATION_MPS2 * gap**2 / 2:
         return True
     speed = float(np.hypot(*before))
     if (
-        not speed > MOVING_MPS
-        or not np.hypot(*(after - before)) <= JUMP_ACCELERATION_MPS2 * gap + CORRECTION_SPEED_CHANGE_MPS
+        not speed > LEAST_SPEED_WITH_MOTION_DIRECTION_MPS
+        or not np.hypot(*(after - before)) <= JUMP_ACCELERATION_MPS2 * gap + LARGEST_VELOCITY_CHANGE_AT_CORRECTION_MPS
     ):
         return False
     ahead, left = before / speed @ way - speed * gap, (before[0] * way[1] - before[1] * way[0]) / speed
-    return bool(abs(ahead) <= LARGEST_CORRECTION_M and abs(left) <= LARGEST_SIDE_CORRECTION_M)
+    return bool(abs(ahead) <= LARGEST_CORRECTION_ALONG_MOTION_M and abs(left) <= LARGEST_SIDE_CORRECTION_M)
 
 
-def _split_ids_by_piece(
+def _give_ids_to_pieces_and_return_old_ids(
     states: States, pieces: NDArray[np.int32], kept_ids: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
     """Give each piece of a track but the first an id of its own, in place; return new id -> old id."""
@@ -207,7 +207,7 @@ def cut_tracks_of_destroyed_actors(
     for actor, first in last.items():
         end = int(np.searchsorted(states.actor, actor, side="right"))
         spread = np.ptp(place[:, first:end], axis=1).max()
-        if spread <= SAME_PLACE_M and end - first > 1:
+        if spread <= SAME_POSITION_TOLERANCE_M and end - first > 1:
             parked.append((first, end))
     gone = [a for a in parked if any(b != a and _stand_together(states, place, a, b) for b in parked)]
     if not gone:
@@ -226,5 +226,7 @@ def _stand_together(
     (a, a_end), (b, b_end) = first_stretch, second_stretch
     apart = np.hypot(*(place[:, a] - place[:, b]))
     return bool(
-        apart <= SAME_PLACE_M and states.t_ns[a] <= states.t_ns[b_end - 1] and states.t_ns[b] <= states.t_ns[a_end - 1]
+        apart <= SAME_POSITION_TOLERANCE_M
+        and states.t_ns[a] <= states.t_ns[b_end - 1]
+        and states.t_ns[b] <= states.t_ns[a_end - 1]
     )

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 LOST_TIME_CHECK: Final = "lost_time"
 """The id of the check whose rows in `quality` are the stretches; the table `lost_time` is derived from these rows."""
-MOST_STRETCHES: Final = 200
+MOST_REPORTED_LOST_STRETCHES: Final = 200
 """If there are more stretches than this, they are reported and judged as a single one, from the first to the last."""
 LATEST_CREDIBLE_NS: Final = 1 << 62
 """The year 2116: a later time means a broken clock, and is not used as a bound."""
@@ -60,7 +60,7 @@ def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) ->
 
 def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None, t_ns: Times) -> list[QualityFinding]:
     """Return one finding per stretch, with times in the clock of the states (`t_ns`: the times of the states)."""
-    if len(lost_times) > MOST_STRETCHES:
+    if len(lost_times) > MOST_REPORTED_LOST_STRETCHES:
         begins, ends = ([ns for ns in column if ns is not None] for column in list(zip(*lost_times, strict=True))[:2])
         first = min(begins) if len(begins) == len(lost_times) else None
         last = max(ends) if len(ends) == len(lost_times) else None

@@ -14,7 +14,11 @@ from drivelint.drive.order import (
     track_starts,
 )
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
-from drivelint.drive.velocity import LARGEST_ERROR_MPS, LEAST_MOVEMENT_M, derive_velocities
+from drivelint.drive.velocity import (
+    LARGEST_VELOCITY_ERROR_MPS,
+    LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M,
+    derive_velocities,
+)
 
 if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask
@@ -91,7 +95,9 @@ def _replace_velocities(
     biased = ~absent & _actors_with_biased_speed(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any() or biased.any()):
         return []
-    false_zero = still & (np.nan_to_num(extent_by_track(states.place, starts)).max(axis=0) > LEAST_MOVEMENT_M)
+    false_zero = still & (
+        np.nan_to_num(extent_by_track(states.place, starts)).max(axis=0) > LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M
+    )
     findings = []
     for tracks, why in (
         (absent, "no velocity in the log"),
@@ -121,7 +127,7 @@ def _filtered_velocity_findings(states: States, rows: Mask) -> list[QualityFindi
     """Return a finding for each actor whose velocities were filtered because its positions are noisy, with their accuracy."""
     text = (
         f"the positions of {{ids}} are noisy: the velocity is a mean over up to two seconds, known to "
-        f"{LARGEST_ERROR_MPS:g} m/s, the acceleration is not known"
+        f"{LARGEST_VELOCITY_ERROR_MPS:g} m/s, the acceleration is not known"
     )
     found = []
     for number in np.unique(states.actor[rows]):

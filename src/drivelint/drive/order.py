@@ -47,7 +47,7 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
     If any column of `STATE_COLUMNS` differs, all of these columns become unknown: the actor is present, but without a position.
     """
-    repeated, of = repetition_mask_and_rows(states)
+    repeated, of = repetition_mask_and_index_without_repetitions(states)
     if not repeated.any():
         return states, []
     unique_states = states.take(~repeated)
@@ -70,7 +70,7 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     ]
 
 
-def repetition_mask_and_rows(states: States) -> tuple[Mask, Indices]:
+def repetition_mask_and_index_without_repetitions(states: States) -> tuple[Mask, Indices]:
     """Return the mask of rows that repeat the actor and time of the row before, and each row's index after these rows are removed."""
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])

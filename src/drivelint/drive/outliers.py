@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.order import extent_by_track, track_starts
-from drivelint.drive.velocity import LEAST_MOVEMENT_M, LEAST_NOISE_SAMPLES, Tracklets, noise_of_samples_m
+from drivelint.drive.velocity import (
+    LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M,
+    LEAST_SAMPLES_TO_ESTIMATE_NOISE,
+    Tracklets,
+    noise_of_samples_m,
+)
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
@@ -25,28 +30,28 @@ if TYPE_CHECKING:
 
 TYRE_LIMIT_MPS2: Final = 12.0
 """No vehicle changes its velocity faster than this and back again (see `ukhc.contact-signature`); an impact does not change it back."""
-MOST_VELOCITY_CHANGE_SHARE: Final = 0.25
+MOST_VELOCITY_CHANGE_SHARE_AT_FALSE_STEP: Final = 0.25
 """At a false step, the velocities before and after it differ by at most this share of the velocity change that the step seems to have."""
 LEAST_JOLTED_ACTORS: Final = 4
 """If at least this many moving actors change speed by the same share at one moment, the log's times or positions are wrong."""
-LEAST_ALIKE_ACTORS_SHARE: Final = 0.8
-LEAST_COMMON_CHANGE_SHARE: Final = 0.12
-MOST_COMMON_SPREAD_SHARE: Final = 0.08
+LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT: Final = 0.8
+LEAST_SPEED_CHANGE_IN_COMMON_JOLT: Final = 0.12
+MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT: Final = 0.08
 """The limits of a common jolt. For each actor, the ratio of its speed to its speed `JOLT_COMPARISON_NS` before and after is computed.
 
-At a common jolt, the median of these ratios differs from 1 by more than `LEAST_COMMON_CHANGE_SHARE`, and at least
-`LEAST_ALIKE_ACTORS_SHARE` of the actors have a ratio within `MOST_COMMON_SPREAD_SHARE` of the median."""
+At a common jolt, the median of these ratios differs from 1 by more than `LEAST_SPEED_CHANGE_IN_COMMON_JOLT`, and at least
+`LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT` of the actors have a ratio within `MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT` of the median."""
 JOLT_COMPARISON_NS: Final = 300_000_000
 AFFECTED_AROUND_JOLT_NS: Final = 500_000_000
 """Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""
-LEAST_JOLTED_MPS: Final = 1.0
+LEAST_SPEED_OF_JOLTED_ACTOR_MPS: Final = 1.0
 """For slower actors, relative changes of speed are noise."""
 OUTLIER_SIGMAS: Final = 6.0
 """A sample is an outlier only if it is off by this many standard deviations of the position noise."""
 LEAST_FALSE_STEP_BOUNDS_M: Final = (0.05, 0.25)
 """With derived velocities, a step counts if it is longer than 24 m/s2 dt2, clipped to these bounds (m): shorter steps cause no jolt of
 12 m/s2."""
-LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
+LEAST_FALSE_STEP_WITH_RECORDED_VELOCITY_M: Final = 0.4
 """With recorded velocities, a step affects the position only; shorter steps are within the accuracy of boxes."""
 PIECE_ROWS = 1 << 18
 """The number of samples that are processed together, to limit memory."""
@@ -62,7 +67,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     """
     n = len(states)
     no_samples = np.zeros(n, np.bool_)
-    if n < LEAST_NOISE_SAMPLES or not {"x_m", "y_m"} <= states.numbers.keys():
+    if n < LEAST_SAMPLES_TO_ESTIMATE_NOISE or not {"x_m", "y_m"} <= states.numbers.keys():
         return no_samples
     place = states.place
     has_velocity = _has_recorded_velocity(states, place)
@@ -96,7 +101,9 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
-    false_zero = still & (np.nan_to_num(extent_by_track(place, starts)).max(axis=0) > LEAST_MOVEMENT_M)
+    false_zero = still & (
+        np.nan_to_num(extent_by_track(place, starts)).max(axis=0) > LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M
+    )
     told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
     return told
 
@@ -119,7 +126,7 @@ def _samples_off_path(
     off = (to - without) * dt_to
     size = np.hypot(*off)
     s, e = noise_m[2:-2], motion_noise_m[2:-2]
-    least = np.where(has_velocity[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_false_step_m(dt_to))
+    least = np.where(has_velocity[2:-2], LEAST_FALSE_STEP_WITH_RECORDED_VELOCITY_M, _least_false_step_m(dt_to))
     limit = np.maximum(least, np.maximum(TYRE_LIMIT_MPS2 * dt_to * dt_away / 2, OUTLIER_SIGMAS * 1.22 * s))
     # there and back: the path bends towards the sample before it, and back after it
     there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
@@ -153,7 +160,7 @@ def _samples_at_false_steps(
     # the velocity must be nearly the same before and after: an impact would change it
     goes_on &= (
         np.hypot(*(after - before))
-        <= MOST_VELOCITY_CHANGE_SHARE * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
+        <= MOST_VELOCITY_CHANGE_SHARE_AT_FALSE_STEP * np.minimum(near, far) / dt_here + OUTLIER_SIGMAS * error_mps
     )
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     outliers[rows] = outliers[rows + 1] = True
@@ -185,20 +192,20 @@ def samples_near_common_jolts(states: States, step: Steps) -> Mask:
     with np.errstate(invalid="ignore", divide="ignore"):
         share = speed[middle] / around
         # actors whose speed differs much before and after the moment are not used
-        usable = (around > LEAST_JOLTED_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
+        usable = (around > LEAST_SPEED_OF_JOLTED_ACTOR_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
     middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
     times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
     if not len(times):
         return near
     order = np.lexsort((share, moment))
     median = share[order][np.r_[0, np.cumsum(count)[:-1]] + count // 2]
-    alike = abs(share - median[moment]) <= MOST_COMMON_SPREAD_SHARE
-    shared = np.bincount(moment[alike], minlength=len(times)) >= LEAST_ALIKE_ACTORS_SHARE * count
-    common = (count >= LEAST_JOLTED_ACTORS) & (abs(median - 1.0) > LEAST_COMMON_CHANGE_SHARE) & shared
+    alike = abs(share - median[moment]) <= MOST_SPEED_RATIO_SPREAD_IN_COMMON_JOLT
+    shared = np.bincount(moment[alike], minlength=len(times)) >= LEAST_SHARE_OF_ACTORS_IN_COMMON_JOLT * count
+    common = (count >= LEAST_JOLTED_ACTORS) & (abs(median - 1.0) > LEAST_SPEED_CHANGE_IN_COMMON_JOLT) & shared
     at = middle[common[moment] & alike]
     # beside a dip, all speeds seem to rise: the median of a window excludes these samples
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
-    at = at[abs(speed[at] / window - 1.0) > LEAST_COMMON_CHANGE_SHARE]
+    at = at[abs(speed[at] / window - 1.0) > LEAST_SPEED_CHANGE_IN_COMMON_JOLT]
     since = states.t_ns - states.t_ns.min()
     key = since + states.actor.astype(np.int64) * (int(since.max()) + 2 * AFFECTED_AROUND_JOLT_NS)
     edges = np.zeros(n + 1, np.int64)

@@ -30,7 +30,7 @@ def cut_trace(trace: Trace, from_ns: int, to_ns: int) -> Trace:
     tables["actor_state"] = states
     tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=actor_ids))
     for name, keys in _KEYS_OF_LASTING_ROWS.items():
-        tables[name] = _with_lasting_rows(tables[name], keys, from_ns, to_ns)
+        tables[name] = _rows_between_and_still_valid_before(tables[name], keys, from_ns, to_ns)
     about = tables["quality"]["actor_id"]
     tables["quality"] = tables["quality"].filter(pc.or_(pc.is_null(about), pc.is_in(about, value_set=actor_ids)))
     tables["data_log"] = _log_row_of_states(tables["data_log"], states)
@@ -41,7 +41,7 @@ def _rows_between(rows: pa.Table, from_ns: int, to_ns: int) -> pa.Table:
     return rows.filter(pc.and_(pc.greater_equal(rows["t_ns"], from_ns), pc.less_equal(rows["t_ns"], to_ns)))
 
 
-def _with_lasting_rows(rows: pa.Table, keys: list[str], from_ns: int, to_ns: int) -> pa.Table:
+def _rows_between_and_still_valid_before(rows: pa.Table, keys: list[str], from_ns: int, to_ns: int) -> pa.Table:
     """Return the rows of the span and, for each key, the last row before it."""
     before = rows.filter(pc.less(rows["t_ns"], from_ns))
     last = before.group_by(keys).aggregate([("t_ns", "max")]).rename_columns([*keys, "t_ns"])

@@ -205,7 +205,7 @@ class QualityFinding:
         return cls(check_id, severity, message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
 
 
-def single_map(topic_by_map: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
+def single_map_or_finding(topic_by_map: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the log's only OpenDRIVE map, or None with a finding if there are several.
 
     `topic_by_map`: map text -> the topic that first had it.

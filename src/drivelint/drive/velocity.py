@@ -1,9 +1,9 @@
 """Derives velocities from positions by a filter whose width depends on the position noise and whose error is known.
 
 The velocity at a state is the least-squares slope of the positions within a half width before and after it: the smallest of
-`HALF_WIDTHS_S` for which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (from a simulator) need central
-differences only; noise of 5 cm at 10 Hz needs half a second. If one second is not enough, the velocity is unknown. An actor that moves no
-more than its noise over two seconds stands still.
+`FILTER_HALF_WIDTHS_S` for which three standard errors are at most `LARGEST_VELOCITY_ERROR_MPS`. Exact positions (from a simulator) need
+central differences only; noise of 5 cm at 10 Hz needs half a second. If one second is not enough, the velocity is unknown. An actor that
+moves no more than its noise over two seconds stands still.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
 
 
-LARGEST_ERROR_MPS: Final = 0.25
+LARGEST_VELOCITY_ERROR_MPS: Final = 0.25
 """A velocity component is known if three standard errors are at most this: half of the speed that counts as standing (`standing_mps`)."""
-HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
+FILTER_HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter in seconds, tried in this order if central differences are too noisy.
 
 At a jerk of 10 m/s3, the derived velocities are wrong by up to 0.06, 0.25 and 1 m/s."""
-LONGEST_FILTERED_PERIOD_NS: Final = 210_000_000
+LONGEST_SAMPLING_PERIOD_TO_FILTER_NS: Final = 210_000_000
 """With longer sampling periods, motion cannot be separated from noise: central differences are used, as for exact positions."""
-LEAST_MOVEMENT_M: Final = 1.0
+LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M: Final = 1.0
 """An actor moves if its positions spread by more than this; the noise of a parked car's positions stays below it."""
-LEAST_NOISE_SAMPLES: Final = 8
+LEAST_SAMPLES_TO_ESTIMATE_NOISE: Final = 8
 """Noise is not estimated from fewer samples than this."""
 
 
@@ -47,7 +47,7 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
     v = time_derivative(place, step)
     filtered = np.zeros(len(t_ns), np.bool_)
     placed = np.flatnonzero(np.isfinite(place).all(axis=0))
-    if not 0 < step.period_ns <= LONGEST_FILTERED_PERIOD_NS or not len(placed):
+    if not 0 < step.period_ns <= LONGEST_SAMPLING_PERIOD_TO_FILTER_NS or not len(placed):
         return DerivedVelocity(v, filtered)
     # a filter does not need a sample at every step: it continues over a single sample without a position
     of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.track_period_ns[placed])
@@ -63,17 +63,17 @@ def _filtered_velocities(
     """Return the velocities (2, n) of samples that all have a position; `central_velocities`: the velocities by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
     sigma = noise_of_samples_m(place, runs, actor, default_m=0.0)
-    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.track_period_ns * 1e-9) <= LARGEST_ERROR_MPS
+    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.track_period_ns * 1e-9) <= LARGEST_VELOCITY_ERROR_MPS
     v, filtered = np.where(has_velocity, central_velocities, np.nan), np.zeros(len(t_ns), np.bool_)
-    for width in HALF_WIDTHS_S:
+    for width in FILTER_HALF_WIDTHS_S:
         if has_velocity.all():
             break
         wide, error = runs.slopes_with_errors(place, width, sigma)
-        now = ~has_velocity & (error <= LARGEST_ERROR_MPS)
+        now = ~has_velocity & (error <= LARGEST_VELOCITY_ERROR_MPS)
         v, has_velocity, filtered = np.where(now, wide, v), has_velocity | now, filtered | now
     # the widest filter decides which actors stand still; at the ends of a track it is one-sided
-    wide, error = runs.slopes_with_errors(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
-    stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
+    wide, error = runs.slopes_with_errors(place, FILTER_HALF_WIDTHS_S[-1], sigma, both_sides=False)
+    stands = (sigma > 0.0) & (error <= LARGEST_VELOCITY_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
     return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~has_velocity & ~stands))
 
 
@@ -134,7 +134,7 @@ def noise_of_samples_m(
 ) -> Floats:
     """Return the standard deviation of each sample's position noise (m); `default_m` is the value for actors with too few samples."""
     sigma = np.maximum(*(noise_by_actor_m(values, tracklets, actor) for values in place))
-    sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = default_m
+    sigma[np.bincount(actor) < LEAST_SAMPLES_TO_ESTIMATE_NOISE] = default_m
     return sigma[actor]
 
 
@@ -154,6 +154,6 @@ def noise_by_actor_m(coordinates: Floats, tracklets: Tracklets, actor: NDArray[n
     whole = (tracklets.first[inner[:-1] - 1] == tracklets.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))
-    for number in np.flatnonzero(np.diff(edges) >= LEAST_NOISE_SAMPLES):
+    for number in np.flatnonzero(np.diff(edges) >= LEAST_SAMPLES_TO_ESTIMATE_NOISE):
         noise_m[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
     return noise_m

@@ -29,18 +29,20 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
 
-BATCH_STATES: Final = 400_000  # the tables of such a batch fit into 1 GiB, and larger batches would save little time
+MAX_BATCH_STATES: Final = (
+    400_000  # the tables of such a batch fit into 1 GiB, and larger batches would save little time
+)
 LARGE_BATCH_STATES: Final = 1_000_000
 """With more states than this, the drives themselves need much memory: the database releases its memory between stages."""
 MOST_STATES_ON_ONE_CORE: Final = 100_000
 """Up to this number of states, several cores do not make a statement faster, but cost a fifth more CPU time."""
-PAIRS_PER_PART: Final = 1_500_000
+EGO_ACTOR_PAIRS_PER_PART: Final = 1_500_000
 """The most pairs (an ego's step and an actor present then) in a part of a drive, which is the row count of the largest tables."""
 LOGS_READ_AHEAD: Final = 4
 FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
 """The most states of a run's first batch, so that there are results soon."""
-BATCH_GROWTH: Final = 6
+MOST_BATCH_GROWTH_FACTOR: Final = 6
 """A batch is at most this many times larger than all batches before it together."""
 
 
@@ -80,7 +82,7 @@ class Drive:
         return dict(sorted(found.items()))
 
     @property
-    def states_or_pairs(self) -> int:
+    def size_in_states_or_pairs(self) -> int:
         """The drive's size for batching: its states, or its pairs of ego steps and actors."""
         return max(self.n_states, sum(self.pairs_by_ego.values()))
 
@@ -126,7 +128,7 @@ def _drive_when_read(path: Path, future: Future[Trace], library: MapLibrary) -> 
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
-    """Yield batches of at most `BATCH_STATES` states or pairs; a longer drive is a batch of its own.
+    """Yield batches of at most `MAX_BATCH_STATES` states or pairs; a longer drive is a batch of its own.
 
     The first batch is small, and the next ones grow, so that an interrupted run has some results. This costs a long run two or three more
     batches, each as much as about twenty short drives.
@@ -135,13 +137,13 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
     states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES
     done_drives = done_states = 0
     for drive in drives:
-        n = drive.states_or_pairs if isinstance(drive, Drive) else 0
-        if batch and (states + n > min(BATCH_STATES, most_states) or len(batch) >= most_drives):
+        n = drive.size_in_states_or_pairs if isinstance(drive, Drive) else 0
+        if batch and (states + n > min(MAX_BATCH_STATES, most_states) or len(batch) >= most_drives):
             yield batch
             done_drives, done_states = done_drives + len(batch), done_states + states
             most_drives, most_states = (
-                max(most_drives, BATCH_GROWTH * done_drives),
-                max(most_states, BATCH_GROWTH * done_states),
+                max(most_drives, MOST_BATCH_GROWTH_FACTOR * done_drives),
+                max(most_states, MOST_BATCH_GROWTH_FACTOR * done_states),
             )
             batch, states = [], 0
         batch.append(drive)
@@ -164,7 +166,7 @@ def egos_to_skip_by_part(drives: Sequence[Drive], pairs_per_part: int | None = N
     """Return, for each part of a batch, the egos that are not judged in it; each part judges at least one ego.
 
     Only a batch of a single drive is split: its egos, sorted by id, into parts of at most `pairs_per_part` pairs (default:
-    `PAIRS_PER_PART`). The results do not depend on the split.
+    `EGO_ACTOR_PAIRS_PER_PART`). The results do not depend on the split.
     """
     pairs = drives[0].pairs_by_ego if len(drives) == 1 else {}
     found: list[list[str]] = []
@@ -172,7 +174,7 @@ def egos_to_skip_by_part(drives: Sequence[Drive], pairs_per_part: int | None = N
     for ego, n in pairs.items():
         if not found or n > left:
             found.append([])
-            left = PAIRS_PER_PART if pairs_per_part is None else pairs_per_part
+            left = EGO_ACTOR_PAIRS_PER_PART if pairs_per_part is None else pairs_per_part
         found[-1].append(ego)
         left -= n
     return [[ego for ego in pairs if ego not in part] for part in map(set, found)] or [[]]

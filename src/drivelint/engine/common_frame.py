@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
 
-SQUARE_SIDE_M: Final = 100.0
-SHAPE_TOLERANCE_M: Final = 0.01
-"""The most (m) by which a square with sides of `SQUARE_SIDE_M` may be distorted by the transformation."""
-LENGTH_TOLERANCE_M: Final = 0.1
-"""The most (m) by which the transformation may change a length of `SQUARE_SIDE_M`. UTM's scale is 0.9996 to 1.001, a local projection's
-1."""
+TEST_SQUARE_SIDE_M: Final = 100.0
+TEST_SQUARE_SHAPE_TOLERANCE_M: Final = 0.01
+"""The most (m) by which a square with sides of `TEST_SQUARE_SIDE_M` may be distorted by the transformation."""
+TEST_SQUARE_SIDE_TOLERANCE_M: Final = 0.1
+"""The most (m) by which the transformation may change a length of `TEST_SQUARE_SIDE_M`. UTM's scale is 0.9996 to 1.001, a local
+projection's 1."""
 SAME_POSITION_M: Final = 0.01
-FAR_OFFSET_M: Final = 10_000.0
+LEAST_FAR_MAP_OFFSET_M: Final = 10_000.0
 """With a larger offset of the map's coordinates, a drive fits the map either with or without it, not both."""
 
 
@@ -79,7 +79,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
 def is_far_from_projection(environment: MapTables) -> bool:
     """Return whether map coordinates and projected coordinates are so far apart that a drive can fit the map in only one of them."""
     frame = frame_of_map(environment)
-    return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > FAR_OFFSET_M
+    return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > LEAST_FAR_MAP_OFFSET_M
 
 
 def _is_placed_by_user(environment: MapTables) -> bool:
@@ -90,18 +90,21 @@ def _is_placed_by_user(environment: MapTables) -> bool:
 def _rotation_and_scale(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
     """Return the rotation (radians) and scale in the middle of an area. Errors: `MapError` if lengths or shapes in it are distorted."""
     at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
-    ends = np.concatenate([at, at + np.array([SQUARE_SIDE_M, 0.0]), at + np.array([0.0, SQUARE_SIDE_M])])
+    ends = np.concatenate([at, at + np.array([TEST_SQUARE_SIDE_M, 0.0]), at + np.array([0.0, TEST_SQUARE_SIDE_M])])
     start, along, across = np.split(_log_to_map_coordinates(log_frame, map_frame, ends), 3)
     along, across = along - start, across - start
     bent = np.hypot(*(across - along[:, ::-1] * (-1.0, 1.0)).T).max()
     lengths = np.hypot(*along.T)
-    if not (bent <= SHAPE_TOLERANCE_M and np.abs(lengths - SQUARE_SIDE_M).max() <= LENGTH_TOLERANCE_M):
+    if not (
+        bent <= TEST_SQUARE_SHAPE_TOLERANCE_M
+        and np.abs(lengths - TEST_SQUARE_SIDE_M).max() <= TEST_SQUARE_SIDE_TOLERANCE_M
+    ):
         raise MapError(
             f"the log's coordinates ({log_frame.reference!r}) cannot be moved into the map's ({map_frame.reference!r}): "
-            f"{SQUARE_SIDE_M:.0f} m would be {lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; "
+            f"{TEST_SQUARE_SIDE_M:.0f} m would be {lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; "
             "bring log and map into one projection"
         )
-    return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / SQUARE_SIDE_M)
+    return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / TEST_SQUARE_SIDE_M)
 
 
 def _log_to_map_coordinates(log_frame: GeoFrame, map_frame: GeoFrame, xy: Floats) -> Floats:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from drivelint.sql.derivations import Derivation
 
-WORKERS: Final = 2
+DERIVATION_WORKERS: Final = 2
 MOST_STATES_FOR_EMPTINESS_TEST: Final = 100_000
 """Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is then
 faster than planning the whole statement."""
@@ -58,7 +58,7 @@ def derive(
     empty = store.tables_without_rows(con) - todo.keys()
     for table in statement_texts("map_shapes").keys() - empty if are_map_tables else ():
         con.execute(statement(f"map_shapes/{table}"))
-    workers = WORKERS if n_states < LEAST_STATES_FOR_ONE_WORKER else 1
+    workers = DERIVATION_WORKERS if n_states < LEAST_STATES_FOR_ONE_WORKER else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
         free = [stack.enter_context(store.cursor(con)) for _ in range(workers)]
         busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}

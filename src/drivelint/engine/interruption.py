@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import duckdb
 
 
-COPIES_MAY_BEGIN_S: Final = 20.0
+LATEST_COPY_BEGIN_AFTER_INTERRUPTION_S: Final = 20.0
 """For this time (s) after an interruption, judging of copies may still begin."""
 
 
@@ -46,8 +46,9 @@ class Interruption:
                 store.interrupt(self._con)
 
     def forbids_new_copies(self) -> bool:
-        """Return whether judging of copies must not begin: the run was interrupted more than `COPIES_MAY_BEGIN_S` ago."""
-        return self.requested and time.monotonic() > self._requested_s + COPIES_MAY_BEGIN_S
+        """Return whether judging of copies must not begin: the run was interrupted more than `LATEST_COPY_BEGIN_AFTER_INTERRUPTION_S`
+        ago."""
+        return self.requested and time.monotonic() > self._requested_s + LATEST_COPY_BEGIN_AFTER_INTERRUPTION_S
 
     @contextmanager
     def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path  # noqa: TC003 - a dataclass names it
 
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
 
 
@@ -25,7 +25,7 @@ class JudgingOptions(DriveInput):
     annotate: bool = True
     robustness: bool | None = None
     """Whether copies are judged to show how robust findings are. None: only for the worst finding per ego and rule."""
-    memory: int | None = DEFAULT_MEMORY
+    memory: int | None = DEFAULT_MEMORY_BYTES
     """The bytes of memory that the database uses before it spills to disk; None: 80 % of the machine's memory."""
     rule_timeout: float = DEFAULT_TIMEOUT_S
     """The time limit in seconds of a rule on a batch of drives."""

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Indices, Mask
     from drivelint.road.map_reader import MapTables
 
-SIDE_CHECK_SAMPLES: Final = 80  # states for checking a known side; every drive is checked, so this must be fast
-VOTE_SAMPLES: Final = 400  # states for finding an unknown side, evenly spread; fast also for a long log
-LEAST_VOTES: Final = 20
+DRIVING_SIDE_CHECK_SAMPLES: Final = 80  # states for checking a known side; every drive is checked, so this must be fast
+DRIVING_SIDE_VOTE_SAMPLES: Final = 400  # states for finding an unknown side, evenly spread; fast also for a long log
+LEAST_DRIVING_SIDE_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions for checking whether a drive is on its map
-LEAST_REVERSED_EACH_WAY: Final = 5
+LEAST_STEPS_AGAINST_LANE_EACH_WAY: Final = 5
 """A road counts as reversed if at least this many steps are against the lane in each direction: overtaking explains only one direction."""
 FARTHEST_NEIGHBOUR_LANE_M: Final = (
     8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
 )
 LEAST_OPPOSITE_LANE_COSINE: Final = 0.9
-LEAST_AGREEING_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
+LEAST_SHARE_OF_HEADINGS_ALONG_LANES: Final = 0.8  # vehicles drive against their lane only in short overtakes
 
 
 class OneWayLanes(NamedTuple):
@@ -61,13 +61,15 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
     )
 
 
-def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, max_positions: int) -> LaneHeadings:
+def compare_headings_with_lanes(
+    lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, max_positions: int
+) -> LaneHeadings:
     """Compare headings with the directions of lanes.
 
     `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. At most `max_positions`, evenly spread, are used.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
-    if len(known) < LEAST_VOTES or not len(lanes.lines):
+    if len(known) < LEAST_DRIVING_SIDE_VOTES or not len(lanes.lines):
         return LaneHeadings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
     chosen = known[np.unique(np.linspace(0, len(known) - 1, min(max_positions, len(known))).astype(np.int64))]
     points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
@@ -82,30 +84,33 @@ def vote_handedness(lanes_handedness: str, headings: LaneHeadings) -> str | None
 
     `lanes_handedness`: the side for which the lanes' directions were made.
     """
-    if len(headings.agree) < LEAST_VOTES:
+    if len(headings.agree) < LEAST_DRIVING_SIDE_VOTES:
         return None
     agree = float(np.mean(headings.agree))
-    if agree >= LEAST_AGREEING_SHARE:
+    if agree >= LEAST_SHARE_OF_HEADINGS_ALONG_LANES:
         return lanes_handedness
-    if agree <= 1 - LEAST_AGREEING_SHARE:
+    if agree <= 1 - LEAST_SHARE_OF_HEADINGS_ALONG_LANES:
         return opposite_side(lanes_handedness)
     return None
 
 
-def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
+def road_with_reversed_traffic(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
     """Return the id of a road with traffic against its lanes in both directions; None: there is none.
 
     Nearly all traffic on the map must be against its lane. Two parallel roads of opposite direction count as one road.
     """
-    if len(headings.agree) < LEAST_VOTES or float(np.mean(headings.agree)) > 1 - LEAST_AGREEING_SHARE:
+    if (
+        len(headings.agree) < LEAST_DRIVING_SIDE_VOTES
+        or float(np.mean(headings.agree)) > 1 - LEAST_SHARE_OF_HEADINGS_ALONG_LANES
+    ):
         return None
     against = headings.lane[~headings.agree]
     for road in sorted({str(name) for name in lanes.road[against]}):
         here = against[lanes.road[against] == road]
-        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_REVERSED_EACH_WAY:
+        if min(int((lanes.along[here] == way).sum()) for way in (1, -1)) >= LEAST_STEPS_AGAINST_LANE_EACH_WAY:
             return road
     lane, counts = np.unique(against, return_counts=True)
-    often = lane[counts >= LEAST_REVERSED_EACH_WAY]
+    often = lane[counts >= LEAST_STEPS_AGAINST_LANE_EACH_WAY]
     one, other = (often[k] for k in np.triu_indices(len(often), 1))
     near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
     heading, back = (
@@ -132,7 +137,7 @@ def lane_areas(environment: MapTables) -> shapely.STRtree:
     return shapely.STRtree(areas)
 
 
-def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int, int]:
+def count_examined_and_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int, int]:
     """Return how many known positions, evenly spread, were examined, and how many of them are on a lanelet.
 
     `FIRST_POSITIONS` are examined first; only if none of them is on a lanelet, `MOST_POSITIONS` are examined.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MANIFEST_FILE: Final = "maps.csv"
 _HEAD_BYTES = 65536
-_LANES_OF_ARGOVERSE: Final = b'"lane_segments"'
+_ARGOVERSE_LANES_KEY: Final = b'"lane_segments"'
 """A key that the JSON of every Argoverse map contains, and other JSON files do not."""
 
 
@@ -89,6 +89,6 @@ def _is_map(file: Path) -> bool:
     if not file.is_file() or suffix not in {".xodr", ".xml", ".osm", ".json"}:
         return False
     if suffix == ".json":
-        return _LANES_OF_ARGOVERSE in file.read_bytes()
+        return _ARGOVERSE_LANES_KEY in file.read_bytes()
     with file.open("rb") as content:
         return (root_element_name(content.read(_HEAD_BYTES)) or "").lower() in READERS_BY_ROOT

@@ -90,7 +90,7 @@ class MapLibrary:
         if source is None:
             return None, trace
         environment = self._load_map(source, trace, None)
-        trace, trouble = self._moved_into_map_frame(environment, trace)
+        trace, trouble = self._moved_into_map_frame_or_evidence_of_other_place(environment, trace)
         if trouble:
             raise MapError(
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
@@ -98,12 +98,14 @@ class MapLibrary:
             )
         if environment.lanes_source == "default":
             assert environment.lanes is not None  # noqa: S101 - `lanes` is None only where the map gives each lane's direction
-            headings = self._lane_headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
+            headings = self._lane_headings(environment, trace.tables["actor_state"], map_fit.DRIVING_SIDE_VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
                 environment = self._load_map(source, trace, voted)
         return environment, with_drive_condition_from_map(trace, "nation", environment.nation)
 
-    def _moved_into_map_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
+    def _moved_into_map_frame_or_evidence_of_other_place(
+        self, environment: MapTables, trace: Trace
+    ) -> tuple[Trace, str | None]:
         """Return the drive in the map's frame, and the evidence that it is at another place, or None.
 
         These coordinates are tried, and the first that fit the map are used:
@@ -156,7 +158,7 @@ class MapLibrary:
         if environment is None:
             return {NOT_IN_FOLDER_CHECK: text} if (text := self._without_map.get(trace.path)) else {}
         found = {
-            "handedness_disagrees": self._side_doubt(trace, environment),
+            "handedness_disagrees": self._driving_side_doubt(trace, environment),
             "map_unread": self._unread.get(trace.path),
         }
         reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
@@ -167,12 +169,12 @@ class MapLibrary:
             )
         return {check: text for check, text in found.items() if text}
 
-    def _side_doubt(self, trace: Trace, environment: MapTables) -> str | None:
+    def _driving_side_doubt(self, trace: Trace, environment: MapTables) -> str | None:
         side, source = environment.handedness, environment.handedness_source
         if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._lane_headings(environment, trace.tables["actor_state"], map_fit.SIDE_CHECK_SAMPLES)
-        if road := map_fit.reversed_road(self._lanes(environment), seen):
+        seen = self._lane_headings(environment, trace.tables["actor_state"], map_fit.DRIVING_SIDE_CHECK_SAMPLES)
+        if road := map_fit.road_with_reversed_traffic(self._lanes(environment), seen):
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
                 f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
@@ -191,7 +193,7 @@ class MapLibrary:
         speed = np.hypot(floats(states["vx_mps"]), floats(states["vy_mps"]))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
-        return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, max_positions)
+        return map_fit.compare_headings_with_lanes(self._lanes(environment), x_m, y_m, yaw_rad, max_positions)
 
     def _only_fitting_map(self, maps: MapFolder, trace: Trace) -> MapSource | None:
         """Return the only readable map that fits the drive's positions; None: no map fits.
@@ -206,7 +208,7 @@ class MapLibrary:
             except MapError as error:
                 unread.append(error)
                 continue
-            if not self._moved_into_map_frame(environment, trace)[1]:
+            if not self._moved_into_map_frame_or_evidence_of_other_place(environment, trace)[1]:
                 fitting.append(source)
         if len(fitting) == 1:
             if unread:  # an unreadable map may be the right one
@@ -253,7 +255,7 @@ def _evidence_of_other_place(environment: MapTables, lanes: shapely.STRtree, sta
             f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
             f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
-    looked, found = map_fit.count_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
+    looked, found = map_fit.count_examined_and_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
     if looked and not found:
         return f"none of the {looked} examined positions is on a lane or other area of the map"
     return None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-DEFAULT_MEMORY: Final = 1_200_000_000
+DEFAULT_MEMORY_BYTES: Final = 1_200_000_000
 """The default limit in bytes. Measured: no slower for a drive of 600,000 states; 2.3 GB instead of 13.7 GB for 4.8 million states."""
 LEAST_MEMORY_BYTES: Final = 100_000_000
 """The least limit in bytes with which a database can be opened and a small drive judged."""
@@ -40,8 +40,8 @@ class MemoryLimit:
         self._limit = limit
         self._note = note
         self.limited = limit is not None
-        share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
-        self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
+        share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY_BYTES)
+        self.pairs_per_part = max(1, int(batch.EGO_ACTOR_PAIRS_PER_PART * share))
         """The most pairs of a part of a drive: see `batch.egos_to_skip_by_part`."""
 
     def halve_parts(self, n_pairs: int) -> None:
@@ -59,7 +59,7 @@ class MemoryLimit:
         )
         return True
 
-    def release(self) -> None:
+    def release_unused_memory(self) -> None:
         """Return unused memory to the system, without changing the limits. Call it between statements."""
         try:
             store.release_memory(self._con)

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import replace_columns
-from drivelint.engine.batch import BATCH_STATES, egos_to_skip_by_part, have_few_states, have_many_states
+from drivelint.engine.batch import MAX_BATCH_STATES, egos_to_skip_by_part, have_few_states, have_many_states
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import set_longitude_and_latitude
 from drivelint.engine.interruption import InterruptedRunError, Interruption
@@ -127,7 +127,7 @@ class JudgingSession:
         """Return whether this log was judged before, by its drive id."""
         return drive.trace.drive_id in self._seen
 
-    def forget_judged(self) -> None:
+    def forget_judged_logs(self) -> None:
         """Clear the list of judged logs, so that they can be judged again. The caller must first delete their results."""
         self._seen.clear()
         for limits in (self._limits, self._limits_of_copies):
@@ -142,14 +142,16 @@ class JudgingSession:
         if not drives:
             return
         done = False
-        self._limits.batches = sum(drive.states_or_pairs for drive in drives) / BATCH_STATES
+        self._limits.batches = sum(drive.size_in_states_or_pairs for drive in drives) / MAX_BATCH_STATES
         while not done:
             try:
                 one_core = store.one_thread(self._con) if have_few_states(drives) else nullcontext()
                 with one_core, store.uniform_memory_errors(), self._interruption.interruptible(self._con):
-                    done = self._judge(drives)
+                    done = self._judge_if_memory_suffices(drives)
             except InterruptedRunError:
-                self._delete_drives([drive.trace.drive_id for drive in drives])  # `_judge`'s deletion may be incomplete
+                self._delete_drives(
+                    [drive.trace.drive_id for drive in drives]
+                )  # `_judge_if_memory_suffices`'s deletion may be incomplete
                 raise
             except duckdb.OutOfMemoryException:
                 # data of a single ego that cannot be spilled to disk may use all memory of the machine
@@ -172,9 +174,9 @@ class JudgingSession:
         """The number of drives whose copies are not judged yet."""
         return self._robustness.n_waiting_drives if self._robustness else 0
 
-    def n_findings_to_copy(self) -> int:
+    def n_findings_to_copy_first(self) -> int:
         """Return the number of findings for which copies are judged first."""
-        return self._robustness.n_first_findings() if self._robustness else 0
+        return self._robustness.n_findings_to_copy_first() if self._robustness else 0
 
     def judge_copies(self, advance: Callable[[int], None] | None = None) -> None:
         """Judge the waiting copies of several batches together; after an interruption, only for a limited time.
@@ -184,7 +186,7 @@ class JudgingSession:
         if self._robustness:
             self._robustness.judge(advance)
 
-    def _judge(self, drives: Sequence[Drive]) -> bool:
+    def _judge_if_memory_suffices(self, drives: Sequence[Drive]) -> bool:
         """Judge a batch. Return False if a part with several egos ran out of memory: the next try has smaller parts."""
         ids = [drive.trace.drive_id for drive in drives]
         on_earth = [drive.trace.drive_id for drive in drives if drive.geo]
@@ -205,7 +207,9 @@ class JudgingSession:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
                     with store.uniform_memory_errors():
                         self._judge_part(
-                            ids, may_retry=may_retry, release=self._memory.release if have_many_states(drives) else None
+                            ids,
+                            may_retry=may_retry,
+                            release=self._memory.release_unused_memory if have_many_states(drives) else None,
                         )
                         set_longitude_and_latitude(self._con, on_earth, "finding")
                         for observer in self._observers:

@@ -23,7 +23,7 @@ def has_conditions(rule: Rule) -> bool:
     return bool(rule.applies.restricted_conditions) or rule.applies.has_speed_limit_condition
 
 
-def condition_fragments(rule: Rule, alias: str, time_sql: str, check_engagement: bool) -> dict[str, str]:
+def condition_sql_fragments(rule: Rule, alias: str, time_sql: str, check_engagement: bool) -> dict[str, str]:
     """Return SQL fragments for the rows of the table `alias` at `time_sql` (an SQL expression).
 
     `in_force`: whether the rule is in force: false if any condition is false, else NULL if any is unknown. `doubt`: the reason code of the

@@ -134,16 +134,16 @@ class Evaluation:
                 with store.uniform_memory_errors():
                     self.aggregate_pending_steps()
             except duckdb.Error:
-                self._judge_queue(deque(self._discard_to_judge_separately(self._pending)))
+                self._judge_queue(deque(self._discard_results_to_judge_separately(self._pending)))
 
-    def _discard_to_judge_separately(self, bindings: Sequence[Binding]) -> list[Binding]:
+    def _discard_results_to_judge_separately(self, bindings: Sequence[Binding]) -> list[Binding]:
         """Delete the results of these rules, and return the rules to judge them separately, so that only the faulty one fails."""
         again = list(bindings)
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
             self.con.execute(f"DELETE FROM {table} WHERE list_contains(?, rule_no)", [numbers])
         self._rules_to_aggregate_separately.update(numbers)
-        self._forget_pending()
+        self._forget_pending_steps()
         return again
 
     def _judge_queue(self, todo: deque[Binding]) -> None:
@@ -174,7 +174,7 @@ class Evaluation:
                     continue
             self._pending = [other for other in self._pending if other is not binding]
             if aggregates:
-                todo.extendleft(self._discard_to_judge_separately(self._pending))
+                todo.extendleft(self._discard_results_to_judge_separately(self._pending))
             self._record_error(binding, failure, held.excess)
 
     def prepare(self) -> None:
@@ -182,7 +182,7 @@ class Evaluation:
         self._n_todo, self._rules_outside_conditions = temp_tables.create_tables_and_count_subjects(
             self.con, self.bindings
         )
-        self._forget_pending()
+        self._forget_pending_steps()
         self._is_short = self._count_rows("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
         self._n_subjects = self._count_rows("SELECT count(*) FROM _subject")
         self._has_holes = self._count_rows("SELECT count(*) FROM _segment WHERE seg > 0") > 0
@@ -218,7 +218,11 @@ class Evaluation:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
 
     def _judge_invariant(self, binding: Binding) -> None:
-        rule, partial, steps = binding.rule, self._skips_some_subjects(binding), self._settle_groups(binding)
+        rule, partial, steps = (
+            binding.rule,
+            self._skips_some_subjects(binding),
+            self._settle_groups_and_select_remaining_steps(binding),
+        )
         if steps is None:
             return
         n_judged = self._execute(
@@ -228,7 +232,7 @@ class Evaluation:
         # if there are as many rows as steps in the grid, no key can be repeated
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
-    def _settle_groups(self, binding: Binding) -> _StepSelectionAndCount | None:
+    def _settle_groups_and_select_remaining_steps(self, binding: Binding) -> _StepSelectionAndCount | None:
         """Settle groups without judging each step; return the remaining steps, or None if there are none."""
         rule, partial = binding.rule, self._skips_some_subjects(binding)
         if rule.per_profile:
@@ -260,7 +264,7 @@ class Evaluation:
             self._execute(reference_points.references_sql(rule, columns, self._skips_some_subjects(binding)), binding)
         ):
             return
-        self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
+        self._execute(reference_points.time_windows_sql(rule, own_object, self._check_engagement), binding)
         self._execute(reference_points.reference_steps_sql(rule), binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
@@ -292,9 +296,9 @@ class Evaluation:
             self._run_statements("stretch", *(["course_of_stretches"] if self.keep_measure_series else []))
         if self.margins:
             self._run_statements("margin_of_steps")
-        self._forget_pending()
+        self._forget_pending_steps()
 
-    def _forget_pending(self) -> None:
+    def _forget_pending_steps(self) -> None:
         self._pending, self._n_pending, self._may_be_double = [], 0, False
         self.con.execute(statement("judging/pending"))  # a new table: DuckDB does not free space of deleted rows
 
@@ -339,7 +343,7 @@ class Evaluation:
         self, binding: Binding, code: str, detail: str | None = None, *, was_skipped: bool = False
     ) -> None:
         values = {"no": binding.no, "code": code, "told": detail, "again": was_skipped, "rule": binding.rule.id}
-        self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_s})
+        self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_cpu_s})
 
 
 def _is_shipped(binding: Binding) -> bool:

@@ -63,7 +63,7 @@ def _grid_sql(rule: Rule, skips_subjects: bool, unsettled: bool, check_engagemen
         base=_grid_of_all_steps_sql(rule),
         todo=subject_join_sql(skips_subjects, "a"),
         unsettled=keep,
-        **applicability.condition_fragments(rule, "a", "a.t_ns", check_engagement),
+        **applicability.condition_sql_fragments(rule, "a", "a.t_ns", check_engagement),
     )
 
 
@@ -118,5 +118,5 @@ def insert_unknowns_of_lost_objects_sql(rule: Rule, skips_subjects: bool, check_
         "outcome_of_lost_objects",
         rule,
         todo=subject_join_sql(skips_subjects, "l"),
-        **applicability.condition_fragments(rule, "l", "l.t_from_ns", check_engagement),
+        **applicability.condition_sql_fragments(rule, "l", "l.t_from_ns", check_engagement),
     )

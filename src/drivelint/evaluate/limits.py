@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 
 DEFAULT_TIMEOUT_S: Final = 30.0
 """The default limit of CPU seconds per rule and batch."""
-EXCESSES_BEFORE_REFUSAL: Final = 3
+LIMIT_EXCESSES_BEFORE_RULE_REFUSAL: Final = 3
 """A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
-_CHECK_PERIOD_S: Final = 0.1
-_MEMORY_GRACE_S: Final = 0.5
-"""CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_MEMORY_SHARE` is reached before."""
-_MOST_MEMORY_SHARE: Final = 1.25
+_RULE_LIMIT_CHECK_PERIOD_S: Final = 0.1
+_GRACE_AFTER_MEMORY_EXCESS_S: Final = 0.5
+"""CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_MULTIPLE_OF_MEMORY_LIMIT` is
+reached before."""
+_MOST_MULTIPLE_OF_MEMORY_LIMIT: Final = 1.25
 """If a rule has used this multiple of its memory limit, it gets no more time to react to the interrupt."""
 
 Excess = Literal["rule_timeout", "out_of_memory"]
@@ -83,7 +84,7 @@ class RuleLimits:
         self.forget_excesses()
 
     @property
-    def allowed_s(self) -> float | None:
+    def allowed_cpu_s(self) -> float | None:
         """The CPU seconds of a rule for the current drives; None: no limit."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
@@ -120,26 +121,26 @@ class RuleLimits:
                 rule_run.end_event.set()
             if rule_run.excess is not None:
                 self._excesses[rule_id] += 1
-                if self._excesses[rule_id] >= EXCESSES_BEFORE_REFUSAL:
+                if self._excesses[rule_id] >= LIMIT_EXCESSES_BEFORE_RULE_REFUSAL:
                     self._lost[rule_id] = rule_run.excess
 
     def _watch(
         self, con: duckdb.DuckDBPyConnection, rule_id: str, rule_run: RunningRule, alone: bool, thread: int
     ) -> None:
-        seconds = self.allowed_s or 0.0
+        seconds = self.allowed_cpu_s or 0.0
         work, before = ProcessorClock(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # the memory of the process above which the rule gets no more time to react
-        while not rule_run.end_event.wait(min(_CHECK_PERIOD_S, seconds)):
+        while not rule_run.end_event.wait(min(_RULE_LIMIT_CHECK_PERIOD_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
             excess = rule_run.excess
             if excess is None:
                 memory = self.memory() if alone else None
                 if memory is None:
                     before = resident
-                most = None if memory is None else before + int(_MOST_MEMORY_SHARE * memory)
+                most = None if memory is None else before + int(_MOST_MULTIPLE_OF_MEMORY_LIMIT * memory)
                 if memory is not None and resident - before > memory:
-                    excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
+                    excess, patience = "out_of_memory", now + min(_GRACE_AFTER_MEMORY_EXCESS_S, seconds)
                 elif now >= seconds:
                     excess, patience = "rule_timeout", now + seconds
                 else:

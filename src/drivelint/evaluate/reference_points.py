@@ -31,7 +31,7 @@ def references_sql(rule: Rule, columns: Sequence[str], skips_subjects: bool) -> 
     )
 
 
-def windows_sql(rule: Rule, has_object_column: bool, check_engagement: bool) -> str:
+def time_windows_sql(rule: Rule, has_object_column: bool, check_engagement: bool) -> str:
     """Return the SQL that appends each reference point to `_occasion`, with its window and whether the rule applies there."""
     has_window = rule.subtype != "physical"
     return statement(
@@ -40,7 +40,7 @@ def windows_sql(rule: Rule, has_object_column: bool, check_engagement: bool) -> 
         crowd="true" if rule.per_object and not has_object_column else "false",
         start="r.t_ns - $_window_ns" if has_window and rule.kind == "precondition" else "r.t_ns",
         end="r.t_ns + $_window_ns" if has_window and rule.kind == "postcondition" else "r.t_ns",
-        **applicability.condition_fragments(rule, "r", "r.t_ns", check_engagement),
+        **applicability.condition_sql_fragments(rule, "r", "r.t_ns", check_engagement),
     )
 
 
@@ -65,7 +65,7 @@ def judged_steps_sql(rule: Rule, has_object_column: bool, check_engagement: bool
     if check_engagement:
         human = f"({applicability.ENGAGED_SQL}) IS DISTINCT FROM true"
         why_human = "CASE WHEN NOT e.engaged THEN 'not_engaged' ELSE 'engaged_unknown' END"
-        joins = applicability.condition_fragments(rule, "g", "g.t_ns", check_engagement)["condition_joins"]
+        joins = applicability.condition_sql_fragments(rule, "g", "g.t_ns", check_engagement)["condition_joins"]
     series = ", _point AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"
     if rule.combine != "each":
         whose = "'who': object_id, 'gain': gain, "

@@ -68,7 +68,7 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
 
 
 def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
-    """Return `queries/judging/<name>.sql` for a rule, with its condition, its profiles, and `condition_fragments` filled in."""
+    """Return `queries/judging/<name>.sql` for a rule, with its condition, its profiles, and `condition_sql_fragments` filled in."""
     return statement(
         f"judging/{name}",
         condition=f"{_REFERENCE_STEP_CTE if rule.kind != 'invariant' else ''}{condition_ctes_sql(rule)}",

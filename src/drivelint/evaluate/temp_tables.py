@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.catalogue.header import CONTACT_TAG, ROAD_USERS_SIGNAL, STANDING_TAG
+from drivelint.catalogue.header import CONTACT_TAG, JUDGES_STANDING_EGO_TAG, ROAD_USERS_SIGNAL
 from drivelint.drive import conditions
 from drivelint.evaluate import applicability
 from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
@@ -67,7 +67,7 @@ def _rule_rows(bindings: Sequence[Binding]) -> pa.Table:
         row |= {
             "of_lanes": bool({"registration", "way"} & set(rule.requires)),
             "of_contact": CONTACT_TAG in rule.tags,
-            "of_standing": STANDING_TAG in rule.tags,
+            "of_standing": JUDGES_STANDING_EGO_TAG in rule.tags,
         }
         row |= {"by_object": rule.combine == "each", "eventually": rule.quantifier == "eventually"}
         row |= {"merge_ns": binding.values(["_merge_ns"])["_merge_ns"]}

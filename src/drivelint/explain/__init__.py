@@ -14,7 +14,7 @@ import msgspec
 import pyarrow.compute as pc
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.errors import UsageError
@@ -61,7 +61,7 @@ class ExplainRequest:
     trace: Path | None = None
     map: Path | None = None
     errors: MeasurementErrors = field(default_factory=MeasurementErrors)
-    memory: int | None = DEFAULT_MEMORY
+    memory: int | None = DEFAULT_MEMORY_BYTES
     """The bytes that the database may use before it uses the disk; None: 80 % of the machine's memory."""
 
 
@@ -130,7 +130,7 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=changes,
         sensitivity=sensitivity,
         source=source,
-        notes=[*_notes_on_changes_since_run(case, now), *_notes_on_removed_ends(of_drive, row["reason_code"])],
+        notes=[*_notes_on_changes_since_run(case, now), *_notes_on_removed_track_ends(of_drive, row["reason_code"])],
     )
 
 
@@ -208,7 +208,7 @@ def _notes_on_changes_since_run(context: VerdictContext, verdict: str) -> list[s
     return notes
 
 
-def _notes_on_removed_ends(drive: Row, reason_code: str | None) -> list[str]:
+def _notes_on_removed_track_ends(drive: Row, reason_code: str | None) -> list[str]:
     """Return notes on tracks whose ends drivelint removed, if the verdict is unknown because a track ends."""
     removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
     told = "drivelint removed the ends of tracks; a longer recording would not change this"

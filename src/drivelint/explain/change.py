@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 RELATIVE_SEARCH_DISTANCES: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
-_N_NEAR_DISTANCES: Final = 3
+_N_DISTANCES_TRIED_FIRST: Final = 3
 """The number of distances that are judged first, because most changes of a verdict occur there."""
 _LEAST_HALVINGS_OF_INTERVAL: Final = 8
 _MOST_HALVINGS_OF_INTERVAL: Final = 12
@@ -138,8 +138,8 @@ def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
     shut: set[int] = set()
     verdicts: dict[float, str] = {}
     for n in range(len(RELATIVE_SEARCH_DISTANCES)):
-        if n in {0, _N_NEAR_DISTANCES}:
-            verdicts |= yield [v for values in sides for v in values[n : _N_NEAR_DISTANCES if n == 0 else None]]
+        if n in {0, _N_DISTANCES_TRIED_FIRST}:
+            verdicts |= yield [v for values in sides for v in values[n : _N_DISTANCES_TRIED_FIRST if n == 0 else None]]
         edges: list[NearestChange] = []
         for side, values in enumerate(sides):
             if n >= len(values) or side in shut:
@@ -185,7 +185,7 @@ def _nearest_changing_value(
             else:  # the verdict may differ from that further away: fail, then pass, then not applicable
                 far, becomes = middle, halved[middle]
     further = values[index + 1 : index + 3] or [values[index]]
-    short = _short_values_beyond(number, far)
+    short = _values_with_few_digits_beyond(number, far)
     verdicts = verdicts | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in verdicts])
     beyond = all(verdicts[v] == becomes for v in further)
     for value in short:
@@ -205,7 +205,7 @@ def _values_by_halving(near: float, far: float, halvings: int) -> Iterator[float
         yield from _values_by_halving(middle, far, halvings - 1)
 
 
-def _short_values_beyond(number: _VariedNumber, far: float) -> list[float]:
+def _values_with_few_digits_beyond(number: _VariedNumber, far: float) -> list[float]:
     """Return numbers with few digits at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from drivelint.explain.sandbox import Judgement, Sandbox
     from drivelint.explain.target import Target
 
-MAX_ROWS: Final = 6
+MAX_SHOWN_ROWS_PER_TABLE: Final = 6
 """The number of rows that are shown of each table."""
 CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
-TABLES_BY_TRACK_STEP: Final = ("pair",)
+TABLES_WITH_ROW_PER_TRACK_STEP: Final = ("pair",)
 """Tables with a row at each step of an object's track. After the end of the track, its last row is shown."""
 SERIES_PADDING_NS: Final = 30_000_000_000
 """Of a longer episode, this much time is shown before and after the explained interval."""
@@ -75,7 +75,7 @@ def required_value_parts(
     if found is None or row["required"] is None or t_ns is None:
         return []
     keys = {"ego_id": row["ego_id"], "t_ns": t_ns, "object_id": row["object_id"], "profile": row["profile"]}
-    keys = {name: keys[name] for name in found.keys if keys.get(name) is not None}
+    keys = {name: keys[name] for name in found.key_columns if keys.get(name) is not None}
     bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
     where = " AND ".join(f"{name} = $_{name}" for name in keys)
     for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
@@ -119,7 +119,7 @@ def _rows_of_table(target: Target, sandbox: Sandbox, table: str, columns: list[s
         terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
     at_time = {} if t_ns is None else _where_terms_of_time(columns, t_ns)
     found = _select_rows(sandbox, table, columns, terms | at_time, row)
-    if not found.rows and at_time and who and table in TABLES_BY_TRACK_STEP:
+    if not found.rows and at_time and who and table in TABLES_WITH_ROW_PER_TRACK_STEP:
         track = sandbox.query(f"SELECT t_ns FROM {table}{_where_clause(terms)} ORDER BY t_ns", _values_of_terms(terms))
         times = [each["t_ns"] for each in track]
         nearest = max((t for t in times if t < t_ns), default=min(times, default=None)) if t_ns is not None else None
@@ -137,7 +137,9 @@ def _select_rows(
     # the rows of the ego and the object come first
     ours = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
     first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
-    everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_ROWS}", [*values, *ours])
+    everything = sandbox.query(
+        f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_SHOWN_ROWS_PER_TABLE}", [*values, *ours]
+    )
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     # leave out the keys, which are the same in all rows
     plain = [{column: each[column] for column in each if column not in {"drive_id", "ego_id"}} for each in everything]

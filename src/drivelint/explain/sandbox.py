@@ -10,7 +10,7 @@ import msgspec
 import pyarrow as pa
 
 from drivelint.arrays import replace_columns
-from drivelint.engine.batch import BATCH_STATES
+from drivelint.engine.batch import MAX_BATCH_STATES
 from drivelint.engine.derive import derive
 from drivelint.engine.memory import MemoryLimit
 from drivelint.errors import UsageError
@@ -59,7 +59,7 @@ class Sandbox:
         self.con = con
         self._memory = MemoryLimit(con, memory)
         states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
-        self._at_once = max(1, BATCH_STATES // max(1, states))
+        self._at_once = max(1, MAX_BATCH_STATES // max(1, states))
         self._insert_rows("profile", profiles)
         self._insert_drives(drives)
         self._derive_tables()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Final
 
-from drivelint.engine.batch import BATCH_STATES
+from drivelint.engine.batch import MAX_BATCH_STATES
 from drivelint.engine.robustness.copies import MeasurementErrors, copies
 from drivelint.explain.model import Sensitivity
 from drivelint.result.certainty import certainty
@@ -36,7 +36,7 @@ def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sens
 def groups_of_perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:
     """Yield the ids and tables of copies of a drive, in groups of a batch's size; the same seed gives the same copies."""
     samples = errors.samples or 0
-    at_once = max(1, BATCH_STATES // max(1, drive.n_states))
+    at_once = max(1, MAX_BATCH_STATES // max(1, drive.n_states))
     for start in range(1, samples + 1, at_once):
         yield copies(drive, errors, range(start, min(start + at_once, samples + 1)))
 

@@ -26,7 +26,7 @@ from drivelint.fleet import intervals
 from drivelint.fleet.distinct_logs import counted_egos_sql
 from drivelint.fleet.situations import SITUATIONS, parameters_of_tag, tag_or_situation_sql
 from drivelint.phrases import hint
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def rates(
         "of": of,
         "value": tag_or_situation_sql(by),
         "without": left_out,
-        "least_share": str(LEAST_KEEPING_SHARE),
+        "least_share": str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING),
     }
     parts = {name: statement(f"fleet/{name}", **fragments) for name in ("profiled", "event")}
     parts["subject"] = counted_egos_sql(of, by, left_out)

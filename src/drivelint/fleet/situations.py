@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.drive.conditions import CONDITION_VALUES
+from drivelint.drive.conditions import RULE_CONDITION_VALUES
 from drivelint.sql.statements import statement
 
 MEASURED_SITUATIONS: Final = {
@@ -13,7 +13,7 @@ MEASURED_SITUATIONS: Final = {
 }
 """Situations that are computed from a drive's exposure and states: name -> values in order."""
 _STATEMENT_BY_SITUATION: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
-SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
+SITUATIONS: Final = {**RULE_CONDITION_VALUES, **MEASURED_SITUATIONS}
 """All situations: name -> values. Situations that are not measured come from tags, from conditions given to `check`, or from the log."""
 UNAVAILABLE_SITUATIONS: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",

@@ -20,7 +20,7 @@ from drivelint.fleet_report.places import FindingMap, finding_map
 from drivelint.fleet_report.rows import options_column_sql, query_rows, ranked_drives_sql, severity_order_sql
 from drivelint.fleet_report.worst_value import WorstTagValue, worst_tag_value
 from drivelint.phrases import plural
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -130,7 +130,7 @@ def fleet_content(
     con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, tags: Sequence[str]
 ) -> FleetContent:
     """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `tags` that no drive has."""
-    share = str(LEAST_KEEPING_SHARE)
+    share = str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()

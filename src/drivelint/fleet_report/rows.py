@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -29,23 +29,27 @@ def query_rows(
 def ranked_drives_sql() -> str:
     """Return the SELECT of the drives with findings, the worst drives first."""
     return statement(
-        "fleet_report/ranked", least_share=str(LEAST_KEEPING_SHARE), event=finding_per_event_sql(COUNTED_PREFIX)
+        "fleet_report/ranked",
+        least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING),
+        event=finding_per_event_sql(COUNTED_PREFIX),
     )
 
 
 def finding_per_event_sql(view_prefix: str) -> str:
     """Return the SELECT of one finding per event. `view_prefix`: prefix of the table `findings`."""
-    return statement("fleet/event", of=view_prefix, least_share=str(LEAST_KEEPING_SHARE))
+    return statement("fleet/event", of=view_prefix, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
 
 
 def counted_finding_ids_sql(view_prefix: str) -> str:
     """Return the SELECT of the id of the finding that is counted for the event of each finding."""
-    return statement("fleet_report/counted_id", of=view_prefix, least_share=str(LEAST_KEEPING_SHARE))
+    return statement(
+        "fleet_report/counted_id", of=view_prefix, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING)
+    )
 
 
 def severity_order_sql() -> str:
     """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
-    return statement("fleet_report/gravest_first", least_share=str(LEAST_KEEPING_SHARE))
+    return statement("fleet_report/gravest_first", least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
 
 
 def options_column_sql(con: duckdb.DuckDBPyConnection) -> str:

@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from drivelint import __version__
 from drivelint.catalogue.header import CONTACT_TAG
-from drivelint.engine.memory import DEFAULT_MEMORY
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive, with_ego
 from drivelint.incident import pdf, sheet
@@ -52,7 +52,7 @@ class IncidentRequest:
     pdf: bool = False
     trace: Path | None = None
     map: Path | None = None
-    memory: int | None = DEFAULT_MEMORY
+    memory: int | None = DEFAULT_MEMORY_BYTES
 
 
 def write_sheet(request: IncidentRequest) -> list[Path]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import UsageError
@@ -45,7 +45,7 @@ class Judge:
     rules: Sequence[Rule]
     params: dict[str, dict[str, Any]]
     profiles: pa.Table
-    memory: int | None = DEFAULT_MEMORY
+    memory: int | None = DEFAULT_MEMORY_BYTES
 
     @classmethod
     def of_run(cls, run_options: RunRequest, rules_of_run: pa.Table, memory: int | None) -> Judge:

@@ -61,7 +61,7 @@ from drivelint.incident.words import (
     text_with_minus_signs,
 )
 from drivelint.report.html.pictures import cameras_by_moment
-from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ def template_values(case: Case) -> dict[str, Any]:
         },
         "recording": _recording_time_texts(finding),
         "errors": MeasurementErrors().standard_deviations_text,
-        "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
+        "least_share": f"{LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING:.0%}",
         "sure": _certainty_values(case),
         "rests": _contact_by_speed_change_sentence(case, motion),
         "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),

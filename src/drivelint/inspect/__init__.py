@@ -14,7 +14,7 @@ from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.default_rules import packs_of_nation
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, MemoryLimit
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
@@ -47,7 +47,7 @@ class InspectRequest(DriveInput):
     trace: str
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
-    memory: int | None = DEFAULT_MEMORY
+    memory: int | None = DEFAULT_MEMORY_BYTES
     """Memory of the database in bytes before it uses the disk; None: 80 % of the machine's memory."""
 
 
@@ -199,7 +199,7 @@ class _KnownConditions:
         self.known_by_ego: dict[str, dict[str, bool]] = {}
 
     def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
-        columns = {**dict.fromkeys(conditions.CONDITION_VALUES), "limit": None}
+        columns = {**dict.fromkeys(conditions.RULE_CONDITION_VALUES), "limit": None}
         known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
         for row in _query_rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")

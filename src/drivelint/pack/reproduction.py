@@ -10,7 +10,7 @@ import msgspec
 import pyarrow.parquet as pq
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
+from drivelint.engine.memory import DEFAULT_MEMORY_BYTES, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import UsageError
@@ -102,7 +102,10 @@ def param_values_by_rule(rules: Iterable[Rule], check_request: RunRequest) -> di
 
 
 def evidence_of_findings(
-    result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
+    result: Result,
+    check_request: RunRequest,
+    memory: int | None = DEFAULT_MEMORY_BYTES,
+    loaded_rules: Sequence[Rule] = (),
 ) -> Evidence:
     """Return the data that reproduce the numbers of each finding. `check_request` has the paths of the logs. `loaded_rules`: the rules of
     the result, if already loaded."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from drivelint.drive.conditions import CONDITION_TEXTS, CONDITION_VALUES, DRIVE_CONDITION_VALUES
+from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES, RULE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.facts import toml_beside
 from drivelint.phrases import hint
@@ -14,7 +14,7 @@ TEXTS: Final = toml_beside(__file__, "signals.toml")
 ADVICE: Final[dict[str, str]] = {
     **{
         name: f"{CONDITION_TEXTS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
-        for name, words in CONDITION_VALUES.items()
+        for name, words in RULE_CONDITION_VALUES.items()
     },
     **{
         f"mode_{mode}": f"when {mode} is on, as declared events {mode} with the values on and off: {{declared_events}}"
@@ -22,7 +22,7 @@ ADVICE: Final[dict[str, str]] = {
     },
     **TEXTS["advice"],
 }
-SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
+SIGNALS: Final = ADVICE.keys() - RULE_CONDITION_VALUES.keys()
 """The signals that a rule may require, as in the table `capability`; the other keys of `ADVICE` are conditions of a drive."""
 MISSING_PREFIX: Final = "missing_"
 """The prefix of the reason code of a rule that is unknown because a signal is missing."""

@@ -9,11 +9,11 @@ if TYPE_CHECKING:
 
 SURE: Final = "sure"
 POSSIBLE: Final = "possible"
-LEAST_KEEPING_SHARE: Final = 0.95
+LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING: Final = 0.95
 """The share of copies that must keep a finding; below that share the finding is only possible."""
 
 
-def certainty(finding: Mapping[str, Any], least_share: float = LEAST_KEEPING_SHARE) -> str | None:
+def certainty(finding: Mapping[str, Any], least_share: float = LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) -> str | None:
     """Return `SURE` or `POSSIBLE` for a row of the table `finding`; None if no copies were judged."""
     if finding["n_copies"] is None:
         return None

@@ -124,7 +124,7 @@ class WindowJudge:
         `drive_start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """
         store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _LASTING_TABLES])
-        self._session.forget_judged()
+        self._session.forget_judged_logs()
         found: dict[str, JudgedWindow | DriveLintError] = {}
         drives: dict[str, Drive] = {}
         for no, trace in enumerate(traces):
@@ -153,7 +153,7 @@ class WindowJudge:
                 found[name] = JudgedWindow(log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **own)
         self._n_passes += 1
         if self._n_passes % PASSES_PER_RELEASE == 0:
-            self._memory.release()
+            self._memory.release_unused_memory()
         return [found[name] for name in sorted(found)]
 
     def __enter__(self) -> Self:

@@ -19,9 +19,9 @@ ANSWER_S = 30.0
 """Seconds in which a scheduler must answer."""
 WORKERLESS_S = 120.0
 """Seconds for which an audit waits for a worker if the cluster has none."""
-_CHECK_PERIOD_S: Final = 5.0
+_CLUSTER_CHECK_PERIOD_S: Final = 5.0
 """Seconds between checks whether the scheduler and workers are still there."""
-_END_STATUSES: Final = frozenset({"finished", "error"})
+_STATUSES_OF_ENDED_TASKS: Final = frozenset({"finished", "error"})
 
 
 class DaskCluster:
@@ -63,7 +63,7 @@ class DaskCluster:
         while self._running:
             try:
                 ended = distributed.wait(
-                    list(self._running), timeout=_CHECK_PERIOD_S, return_when="FIRST_COMPLETED"
+                    list(self._running), timeout=_CLUSTER_CHECK_PERIOD_S, return_when="FIRST_COMPLETED"
                 ).done
             except TimeoutError:
                 ended = set()
@@ -77,7 +77,7 @@ class DaskCluster:
             if self._client.status != "running":
                 raise self._scheduler_error("the connection was lost")
             # futures whose result was lost with a worker are skipped: another worker computes them again
-            ended = {future for future in ended if future.status in _END_STATUSES}
+            ended = {future for future in ended if future.status in _STATUSES_OF_ENDED_TASKS}
             if ended:
                 self._workerless_since = None
                 return [self._task_outcome(future, self._running.pop(future)) for future in ended]
@@ -103,7 +103,7 @@ class DaskCluster:
 
     def _fail_if_long_workerless(self) -> None:
         try:
-            workers = self._client.nthreads(callback_timeout=_CHECK_PERIOD_S)
+            workers = self._client.nthreads(callback_timeout=_CLUSTER_CHECK_PERIOD_S)
         except OSError:  # Dask itself detects a lost connection, and then cancels the tasks
             return
         now = time.monotonic()

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
     from drivelint.audit.model import Receipt, Task
 
-TASKS_PER_WORKER: Final = 500
+TASKS_BEFORE_WORKER_REPLACEMENT: Final = 500
 """A worker is replaced after this many tasks, so that leaks in libraries cannot accumulate."""
-_CHECK_PERIOD_S: Final = 0.1
+_WORKER_CHECK_PERIOD_S: Final = 0.1
 _BEGUN_MESSAGE: Final = "begun"
 """The message of a worker that has opened its database. Its computing time counts from then on."""
 
@@ -60,7 +60,7 @@ class LocalPool:
     def wait(self) -> list[TaskOutcome]:
         """See `Executor.wait`."""
         while busy := [worker for worker in self._workers if worker.task is not None]:
-            heard = wait([worker.pipe for worker in busy], timeout=_CHECK_PERIOD_S)
+            heard = wait([worker.pipe for worker in busy], timeout=_WORKER_CHECK_PERIOD_S)
             found = [
                 worker.receive_message() if worker.pipe in heard else worker.kill_if_over_limit() for worker in busy
             ]
@@ -109,7 +109,7 @@ class _Worker:
     @property
     def is_to_be_replaced(self) -> bool:
         """Whether the worker has no task and must not get another one."""
-        return self.task is None and (self._n_tasks >= TASKS_PER_WORKER or not self._process.is_alive())
+        return self.task is None and (self._n_tasks >= TASKS_BEFORE_WORKER_REPLACEMENT or not self._process.is_alive())
 
     def send_task(self, task: Task) -> None:
         """Send a task to the worker."""
@@ -124,36 +124,36 @@ class _Worker:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
             self._process.join()
-            return self._end_with_loss(f"the worker died (exit code {self._process.exitcode})")
+            return self._kill_and_return_loss(f"the worker died (exit code {self._process.exitcode})")
         if isinstance(told, str):
             self._cpu_s_at_begin = self._last_cpu_s = self._processor_seconds()
             self._advanced_at_s = monotonic()
             return None
-        task = self._take_task()
+        task = self._remove_current_task()
         return TaskOutcome(task, error=told) if isinstance(told, Exception) else TaskOutcome(task, told)
 
     def kill_if_over_limit(self) -> TaskOutcome | None:
         """Kill the worker if it exceeds a limit, and return the loss as the task's outcome; None: it is within its limits."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
-            return self._end_with_loss(
+            return self._kill_and_return_loss(
                 f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
             )
         if self._timeout_s is None or self._cpu_s_at_begin is None or self.task is None:
             return None
         limit_s, now_s = self._timeout_s * len(self.task.drives), self._processor_seconds()
         if now_s - self._cpu_s_at_begin > limit_s:
-            return self._end_with_loss(f"the worker took too long: it computed for more than {limit_s:g} s")
+            return self._kill_and_return_loss(f"the worker took too long: it computed for more than {limit_s:g} s")
         if now_s > self._last_cpu_s:
             self._last_cpu_s, self._advanced_at_s = now_s, monotonic()
         elif monotonic() - self._advanced_at_s > limit_s:
-            return self._end_with_loss(f"the worker took too long: it did nothing for {limit_s:g} s")
+            return self._kill_and_return_loss(f"the worker took too long: it did nothing for {limit_s:g} s")
         return None
 
-    def _end_with_loss(self, why: str) -> TaskOutcome:
+    def _kill_and_return_loss(self, why: str) -> TaskOutcome:
         self.kill()
-        return TaskOutcome(self._take_task(), loss_reason=why)
+        return TaskOutcome(self._remove_current_task(), loss_reason=why)
 
-    def _take_task(self) -> Task:
+    def _remove_current_task(self) -> Task:
         task, self.task = self.task, None
         if task is None:
             raise ValueError("a worker without a task has no outcome")

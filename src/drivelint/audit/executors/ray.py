@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 ray: Any = import_module("ray")  # only partly typed, and not installed where types are checked
 exceptions: Any = import_module("ray.exceptions")
-_WORKER_LOSSES: Final = (
+_WORKER_LOSS_ERRORS: Final = (
     exceptions.WorkerCrashedError,
     exceptions.NodeDiedError,
     exceptions.OutOfMemoryError,
@@ -66,7 +66,7 @@ class RayCluster:
 def _task_outcome(future: Any, task: Task) -> TaskOutcome:
     try:
         return TaskOutcome(task, ray.get(future))
-    except _WORKER_LOSSES as error:
+    except _WORKER_LOSS_ERRORS as error:
         return TaskOutcome(task, loss_reason=f"the worker died ({type(error).__name__})")
     except exceptions.RayTaskError as error:
         return TaskOutcome(task, error=error.cause if isinstance(error.cause, Exception) else error)

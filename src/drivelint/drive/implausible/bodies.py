@@ -26,31 +26,31 @@ if TYPE_CHECKING:
 
 DEEP_OVERLAP_SHARE: Final = 0.5
 """Two boxes overlap deeply if they overlap by this share of the smaller extent, both along and across the first box."""
-SAME_VELOCITY_MPS: Final = 2.0
+SAME_BODY_MOST_VELOCITY_DIFFERENCE_MPS: Final = 2.0
 """The median difference of the velocities of two tracks of one body is at most this."""
 LEAST_DEEP_SAMPLE_SHARE: Final = 0.8
 """Two tracks of one body overlap deeply in at least this share of their common samples."""
-LEAST_COMMON_SAMPLES: Final = 3
+SAME_BODY_LEAST_COMMON_SAMPLES: Final = 3
 """Two tracks of one body have at least this many common samples."""
 FARTHEST_OVERLAPPING_CENTRES_M: Final = 100.0
 """The centres of two overlapping bodies are at most this far apart."""
 LARGEST_CELL_NUMBER: Final = 10**10
 """Numbers of grid cells are clipped to this, so that the cell number times the number of times fits into 64 bits."""
-PAIRS_PER_PART: Final = 1_000_000
+BOX_PAIRS_PER_PART: Final = 1_000_000
 """The approximate number of pairs of boxes in memory at once."""
-MOST_FALSE_ENTRY_SAMPLES: Final = 3
+MOST_FALSE_TRACK_START_SAMPLES: Final = 3
 """A track with a false start reaches its true position within this many samples."""
-FALSE_ENTRY_LEAST_CHANGE_MPS: Final = 5.0
+FALSE_TRACK_START_LEAST_CHANGE_MPS: Final = 5.0
 """If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
 
-COUPLED_GAP_M: Final = 2.0
-COUPLED_ASIDE_M: Final = 1.0
+MOST_COUPLED_GAP_M: Final = 2.0
+MOST_COUPLED_SIDE_OFFSET_M: Final = 1.0
 LEAST_COUPLED_MPS: Final = 5.0
 LEAST_COUPLED_SAMPLES: Final = 10
 LEAST_COUPLED_OVERLAP_M: Final = 0.3
-"""Two tracks are coupled (one body) if in all common samples, at least `LEAST_COUPLED_SAMPLES`, one box is within `COUPLED_GAP_M` behind
-the other and `COUPLED_ASIDE_M` to the side, at a median speed of at least `LEAST_COUPLED_MPS`,
+"""Two tracks are coupled (one body) if in all common samples, at least `LEAST_COUPLED_SAMPLES`, one box is within `MOST_COUPLED_GAP_M`
+behind the other and `MOST_COUPLED_SIDE_OFFSET_M` to the side, at a median speed of at least `LEAST_COUPLED_MPS`,
 and they overlap by at least `LEAST_COUPLED_OVERLAP_M` in some sample."""
 
 
@@ -67,17 +67,17 @@ LEAST_OVERLAP_AT_TRACK_BEGIN_M: Final = 0.3
 LEAST_SPEED_AT_TRACK_BEGIN_MPS: Final = 2.0
 """If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
 doubtful."""
-LATERAL_NOISE_M: Final = 0.3
+LATERAL_OVERLAP_NOISE_M: Final = 0.3
 """The noise that positions and headings add to a lateral overlap."""
 MOST_SIDE_BY_SIDE_OVERLAP_SHARE: Final = 2 / 3
 """Two boxes that overlap laterally by at most this share of the smaller width may be side by side: the position error may be lateral."""
-IMPACT_SPEED_CHANGE_MPS: Final = 1.5
+LEAST_VELOCITY_CHANGE_OF_IMPACT_MPS: Final = 1.5
 """A velocity that changes by more than this between two samples may be caused by an impact."""
-REPEATED_POSITION_NS: Final = 2_000_000_000
+REPEATED_END_POSITIONS_NS: Final = 2_000_000_000
 NEXT_VEHICLE_ARRIVAL_NS: Final = 1_000_000_000
-LEAVING_ACCELERATION_MPS2: Final = 4.0
+MOST_LEAVING_ACCELERATION_MPS2: Final = 4.0
 """The highest acceleration of an actor after a standstill at the end of its track. If another vehicle is there sooner, within
-`NEXT_VEHICLE_ARRIVAL_NS`, the last `REPEATED_POSITION_NS` of the track are repeated positions."""
+`NEXT_VEHICLE_ARRIVAL_NS`, the last `REPEATED_END_POSITIONS_NS` of the track are repeated positions."""
 
 
 def same_body_findings(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
@@ -92,13 +92,13 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
         rows_a, rows_b = _rows_at_common_times(states, track_a, track_b)
         first, second = _boxes_of_rows(states, half, rows_a), _boxes_of_rows(states, half, rows_b)
         deep = _overlap_deeply(first, second)
-        if len(deep) < LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < LEAST_DEEP_SAMPLE_SHARE:
+        if len(deep) < SAME_BODY_LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < LEAST_DEEP_SAMPLE_SHARE:
             if not _are_coupled(first, second):
                 together = _doubtful_begin_samples(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
-        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_VELOCITY_MPS:
+        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_BODY_MOST_VELOCITY_DIFFERENCE_MPS:
             continue
         length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
@@ -111,7 +111,7 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
-def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
+def false_track_start_findings(states: States, step: Steps) -> list[QualityFinding]:
     """Return a finding on the first samples of tracks that begin with an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
@@ -119,10 +119,10 @@ def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
     ends = np.r_[starts[1:], n]
     with np.errstate(invalid="ignore", divide="ignore"):
         moved = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
-    for k in range(MOST_FALSE_ENTRY_SAMPLES):
-        first = starts[ends - starts > MOST_FALSE_ENTRY_SAMPLES + 2] + k
+    for k in range(MOST_FALSE_TRACK_START_SAMPLES):
+        first = starts[ends - starts > MOST_FALSE_TRACK_START_SAMPLES + 2] + k
         change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
-        hard = change > FALSE_ENTRY_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
+        hard = change > FALSE_TRACK_START_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
@@ -132,7 +132,7 @@ def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
-def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding]:
+def repeated_end_position_findings(states: States, actors: Actors) -> list[QualityFinding]:
     """Return a finding on tracks that end with repeated positions.
 
     They end at a standstill, and another vehicle is at the same position sooner than the first one could leave it.
@@ -152,23 +152,25 @@ def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding
         # an actor that touches it at that time, or brakes hard from then on, may have collided with it
         before = order[now:after]
         clear = (
-            _overlaps_m(_boxes_of_rows(states, half, np.full(len(before), last)), _boxes_of_rows(states, half, before))[
-                0
-            ].min(axis=0)
+            _overlaps_and_second_half_extents_m(
+                _boxes_of_rows(states, half, np.full(len(before), last)), _boxes_of_rows(states, half, before)
+            )[0].min(axis=0)
             < 0.0
         )
         speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
         other_rows = order[after:end]
         other_rows = other_rows[motor[states.actor[other_rows]]]
         were = np.array([speed.get(number, np.nan) for number in states.actor[other_rows].tolist()])
-        other_rows = other_rows[speeds[other_rows] > np.maximum(were - IMPACT_SPEED_CHANGE_MPS, SPIN_FASTEST_MPS)]
+        other_rows = other_rows[
+            speeds[other_rows] > np.maximum(were - LEAST_VELOCITY_CHANGE_OF_IMPACT_MPS, SPIN_FASTEST_MPS)
+        ]
         if not len(other_rows):
             continue
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
         mine = _boxes_of_rows(states, half, np.full(len(other_rows), last))
-        depth = _overlaps_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
-        if (depth > LEAST_OVERLAP_AT_TRACK_BEGIN_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
-            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_POSITION_NS
+        depth = _overlaps_and_second_half_extents_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
+        if (depth > LEAST_OVERLAP_AT_TRACK_BEGIN_M + MOST_LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
+            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_END_POSITIONS_NS
     text = (
         "tracks end with a standstill at a position from which another vehicle drives on at once, in {n} of {of} "
         "states ({ids}): these positions are repeated, not measured"
@@ -196,7 +198,7 @@ def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int,
         near = (
             _overlap_deeply(mine, theirs)
             | coupled
-            | (_overlaps_m(mine, theirs)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(axis=0)
+            | (_overlaps_and_second_half_extents_m(mine, theirs)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(axis=0)
         )
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
@@ -204,7 +206,7 @@ def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int,
 def _possible_overlap_rows(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Yield pairs of rows in parts: the first row of a track, and a row of the same time whose box may overlap it along x."""
     half_m = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2.0
-    reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + COUPLED_GAP_M, FARTHEST_OVERLAPPING_CENTRES_M)
+    reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + MOST_COUPLED_GAP_M, FARTHEST_OVERLAPPING_CENTRES_M)
     x = states.numbers["x_m"]
     rows, starts = np.flatnonzero(np.isfinite(x)), starts[np.isfinite(x[starts])]
     if not len(starts):
@@ -217,7 +219,7 @@ def _possible_overlap_rows(states: States, actors: Actors, starts: Indices) -> I
     order = np.argsort(key, kind="stable")
     rows, key = rows[order], key[order]
     low, high = np.searchsorted(key, at - 1), np.searchsorted(key, at + 1, side="right")
-    part = np.cumsum(high - low) // PAIRS_PER_PART
+    part = np.cumsum(high - low) // BOX_PAIRS_PER_PART
     for k in np.unique(part):
         n, begin = (high - low)[part == k], low[part == k]
         nth = np.arange(int(n.sum())) - np.repeat(np.cumsum(n) - n, n)
@@ -247,17 +249,17 @@ def _boxes_of_rows(states: States, half_sizes: Floats, rows: Indices) -> _Boxes:
 
 def _overlap_deeply(first: _Boxes, second: _Boxes) -> Mask:
     """Return the mask of the pairs of boxes (n) that overlap deeply (see `DEEP_OVERLAP_SHARE`); False where a value is NaN."""
-    overlap, reach = _overlaps_m(first, second)
+    overlap, reach = _overlaps_and_second_half_extents_m(first, second)
     deep: Mask = np.all(overlap >= 2.0 * DEEP_OVERLAP_SHARE * np.minimum(first.half_sizes, reach), axis=0)
     return deep
 
 
 def _are_in_line(first: _Boxes, second: _Boxes) -> Mask:
     """Return the mask of the pairs of boxes (n) that are close behind each other, in line, with one heading; False for NaN."""
-    overlap, reach = _overlaps_m(first, second)
+    overlap, reach = _overlaps_and_second_half_extents_m(first, second)
     aside = first.half_sizes[1] + reach[1] - overlap[1]
     ahead = first.half_sizes[0] + reach[0] - overlap[0]
-    near = (overlap[0] >= -COUPLED_GAP_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
+    near = (overlap[0] >= -MOST_COUPLED_GAP_M) & (aside <= MOST_COUPLED_SIDE_OFFSET_M) & (ahead > aside)
     line: Mask = near & ((first.unit_along * second.unit_along).sum(axis=0) > 0.95)
     return line
 
@@ -270,7 +272,7 @@ def _are_coupled(first: _Boxes, second: _Boxes) -> bool:
     line = _are_in_line(first, second)
     if len(line) < LEAST_COUPLED_SAMPLES or not line.all():
         return False
-    sunk = _overlaps_m(first, second)[0][0] >= LEAST_COUPLED_OVERLAP_M
+    sunk = _overlaps_and_second_half_extents_m(first, second)[0][0] >= LEAST_COUPLED_OVERLAP_M
     speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (first, second)])
     return bool(sunk.any() and np.nanmedian(speeds) >= LEAST_COUPLED_MPS)
 
@@ -280,7 +282,10 @@ def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
 
     It extends until the boxes are as far apart as they overlapped. If a velocity changes as in an impact meanwhile, it is empty.
     """
-    across, depth = _overlaps_m(first, second)[0][1], _overlaps_m(first, second)[0].min(axis=0)
+    across, depth = (
+        _overlaps_and_second_half_extents_m(first, second)[0][1],
+        _overlaps_and_second_half_extents_m(first, second)[0].min(axis=0),
+    )
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
     if (
@@ -293,16 +298,18 @@ def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     ):
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
-    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > IMPACT_SPEED_CHANGE_MPS for boxes in (first, second)]
+    hit = [
+        np.hypot(*np.diff(boxes.velocity[:, :until])) > LEAST_VELOCITY_CHANGE_OF_IMPACT_MPS for boxes in (first, second)
+    ]
     # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
     if across[0] <= MOST_SIDE_BY_SIDE_OVERLAP_SHARE * 2 * min(first.half_sizes[1][0], second.half_sizes[1][0]):
-        most = across[together].max() + LATERAL_NOISE_M
+        most = across[together].max() + LATERAL_OVERLAP_NOISE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
 
 
-def _overlaps_m(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
+def _overlaps_and_second_half_extents_m(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
     """Return the overlaps (2, n) of pairs of boxes along and across the first box, negative if they are apart.
 
     Also return the half extents (2, n) of the second box in these directions.

@@ -27,15 +27,15 @@ TYRE_LIMIT_MPS2: Final = 12.0
 """No tyre changes a velocity faster than this, and an impact does not change it back (see `ukhc.contact-signature`)."""
 LONGEST_JOLT_SAMPLES: Final = 2
 """A jolt of at most this many samples is a recording error: with central differences, one wrong position affects two velocities."""
-LEAST_JOLT_MPS: Final = 1.0
+LEAST_VELOCITY_CHANGE_OF_JOLT_MPS: Final = 1.0
 """Smaller changes of velocity are within the accuracy of a tracker."""
-LEAST_STEP_M: Final = 0.5
-LEAST_STEP_SHARE: Final = 0.15
+LEAST_FALSE_STEP_M: Final = 0.5
+LEAST_FALSE_STEP_SHARE: Final = 0.15
 """A single step of the positions is a recording error if it is off the velocity by more than 0.5 m + 15 %, and by more than
-`LEAST_STEP_SIGMAS` standard deviations of the noise."""
-LEAST_STEP_SIGMAS: Final = 6.0
-MOST_REVERSED_REST_SHARE: Final = 0.3
-REVERSING_STEP_WITHIN_NS: Final = 3_000_000_000
+`LEAST_FALSE_STEP_SIGMAS` standard deviations of the noise."""
+LEAST_FALSE_STEP_SIGMAS: Final = 6.0
+MOST_REST_SHARE_OF_UNDONE_STEP: Final = 0.3
+STEP_UNDONE_WITHIN_NS: Final = 3_000_000_000
 """A step within 3 s reverses an earlier one if their sum is at most 30 % of the earlier one."""
 SPIN_LEAST_RAD: Final = np.deg2rad(12.0)
 LEAST_TURNING_RADIUS_M: Final = 3.0
@@ -43,9 +43,9 @@ SPIN_WINDOW_S: Final = 1.0
 SPIN_FASTEST_MPS: Final = 1.0
 """Within a second, a slow vehicle turns by at most its distance divided by 3 m (the smallest turning radius), plus 12 degrees for a
 detector's noise."""
-FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
+FASTEST_SPEED_BY_CLASS_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
 """Class -> its highest possible speed: a sprinter's record, a galloping horse, a descent of racers."""
-LEAST_FAST_SAMPLES: Final = 3
+LEAST_TOO_FAST_SAMPLES: Final = 3
 
 
 def implausible_motion_findings(
@@ -88,7 +88,9 @@ def _jolt_samples(states: States, step: Steps) -> Mask:
     jolt = np.zeros(len(states), np.bool_)
     change = np.diff(v)
     with np.errstate(invalid="ignore"):
-        hard = step.continuous & (np.hypot(*change) > np.maximum(TYRE_LIMIT_MPS2 * step.dt_s, LEAST_JOLT_MPS))
+        hard = step.continuous & (
+            np.hypot(*change) > np.maximum(TYRE_LIMIT_MPS2 * step.dt_s, LEAST_VELOCITY_CHANGE_OF_JOLT_MPS)
+        )
     if not hard.any():
         return jolt
     for width in range(1, LONGEST_JOLT_SAMPLES + 1):
@@ -117,27 +119,29 @@ def _false_step_samples(states: States, step: Steps) -> Mask:
     size = np.hypot(*off)
     way = np.where(known, np.hypot(*np.diff(states.place)), 0.0)
     turn = np.where(known, np.hypot(*np.diff(states.velocity)) * step.dt_s / 2.0, 0.0)
-    limit = LEAST_STEP_M + LEAST_STEP_SHARE * way + turn
+    limit = LEAST_FALSE_STEP_M + LEAST_FALSE_STEP_SHARE * way + turn
     if not (size > limit).any():
         return aside
     sigma = noise_of_samples_m(
         states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor, default_m=0.0
     )
-    limit = np.maximum(limit, LEAST_STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
+    limit = np.maximum(limit, LEAST_FALSE_STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
     # only isolated steps count: if the neighbouring steps differ in the same direction, the velocity is wrong
-    alone = size > 2.0 * np.maximum(_error_component_m(off, size, 1), _error_component_m(off, size, -1))
+    alone = size > 2.0 * np.maximum(
+        _neighbour_error_along_own_error_m(off, size, 1), _neighbour_error_along_own_error_m(off, size, -1)
+    )
     # a real step by an impact also changes the velocity
     hit = np.hypot(*np.diff(states.velocity)) > TYRE_LIMIT_MPS2 * step.dt_s
     at = np.flatnonzero((size > limit) & alone & ~hit)
     aside[at] = aside[at + 1] = True
     for a, b in pairwise(at):
-        same = states.actor[a] == states.actor[b] and states.t_ns[b] - states.t_ns[a] <= REVERSING_STEP_WITHIN_NS
-        if same and np.hypot(*(off[:, a] + off[:, b])) <= MOST_REVERSED_REST_SHARE * size[a]:
+        same = states.actor[a] == states.actor[b] and states.t_ns[b] - states.t_ns[a] <= STEP_UNDONE_WITHIN_NS
+        if same and np.hypot(*(off[:, a] + off[:, b])) <= MOST_REST_SHARE_OF_UNDONE_STEP * size[a]:
             aside[a + 1 : b + 1] = True
     return aside
 
 
-def _error_component_m(error: Floats, error_m: Floats, steps_later: int) -> Floats:
+def _neighbour_error_along_own_error_m(error: Floats, error_m: Floats, steps_later: int) -> Floats:
     """Return for each step (n - 1) the component of the error of another step along the step's own error, in metres.
 
     `error`: the errors (2, n - 1); `error_m`: their lengths; `steps_later`: 1 for the step before, -1 for the step after.
@@ -176,7 +180,7 @@ def _spin_samples(states: States, step: Steps, actors: Actors) -> Mask:
 def _too_fast_samples(states: States, actors: Actors) -> Mask:
     """Return the mask of all samples of the actors that exceed the highest speed of their class in at least three samples."""
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
-    limits = np.array([FASTEST_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
+    limits = np.array([FASTEST_SPEED_BY_CLASS_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
     over = np.hypot(*states.velocity) > limits[states.actor]
-    many = np.bincount(states.actor[over], minlength=len(states.ids)) >= LEAST_FAST_SAMPLES
+    many = np.bincount(states.actor[over], minlength=len(states.ids)) >= LEAST_TOO_FAST_SAMPLES
     return many[states.actor]

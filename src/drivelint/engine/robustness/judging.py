@@ -25,11 +25,11 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.engine.batch import BATCH_STATES, have_many_states
+from drivelint.engine.batch import MAX_BATCH_STATES, have_many_states
 from drivelint.engine.derive import derive
 from drivelint.engine.robustness.copies import copies
 from drivelint.engine.robustness.question import (
-    N_COPIES,
+    N_COPIES_TO_SETTLE,
     OutcomeInCopies,
     RobustnessQuestion,
     drive_ego_and_rule,
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from drivelint.engine.robustness.copies import MeasurementErrors
     from drivelint.evaluate.limits import RuleLimits
 
-SAME_REFERENCE_NS: Final = 2_000_000_000
+SAME_REFERENCE_POINT_TOLERANCE_NS: Final = 2_000_000_000
 """Reference points of a drive and of its copy are the same if they are at most this far apart."""
 MOST_STATES_FOR_ONE_PASS: Final = 10_000
 """If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
@@ -101,7 +101,7 @@ class RobustnessJudge:
         found = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
         with_findings = set(pc.unique(found["drive_id"]).to_pylist())
         self._waiting |= {name: drive for name, drive in zip(ids, drives, strict=True) if name in with_findings}
-        if sum(drive.n_states for drive in self._waiting.values()) > BATCH_STATES:
+        if sum(drive.n_states for drive in self._waiting.values()) > MAX_BATCH_STATES:
             self.judge()
 
     @property
@@ -109,7 +109,7 @@ class RobustnessJudge:
         """The number of drives whose copies are not judged yet."""
         return len(self._waiting)
 
-    def n_first_findings(self) -> int:
+    def n_findings_to_copy_first(self) -> int:
         """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
         gravest, near, _ = worst_near_and_other_questions(questions)
@@ -134,9 +134,9 @@ class RobustnessJudge:
         questions = self._questions(by_id)
         set_extents(questions)  # of all findings, so that the windows do not depend on which of them are judged
         gravest, near, others = worst_near_and_other_questions(questions)
-        most_states = BATCH_STATES
+        most_states = MAX_BATCH_STATES
         if have_many_states(by_id.values()):
-            self._memory.release()
+            self._memory.release_unused_memory()
             most_states //= 2
         self._judge_until_settled(by_id, questions if self._of_all else [*gravest, *near], most_states)
         doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_finding_certain}
@@ -172,12 +172,12 @@ class RobustnessJudge:
                 self._judge_windows(chunk)
                 return
             for question in chunk[0].questions:
-                question.restart_with_size(N_WINDOW_SIZES)
+                question.restart_with_window_size(N_WINDOW_SIZES)
             return
         for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
                 outcome = outcomes.get(id(question), OutcomeInCopies())
-                question.add_copies(window.numbers, outcome.margins, outcome.passes)
+                question.add_results_of_copies(window.numbers, outcome.margins, outcome.passes)
 
     def _outcomes_by_window_and_question(self, chunk: Sequence[Window]) -> list[dict[int, OutcomeInCopies]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""
@@ -208,7 +208,7 @@ class RobustnessJudge:
             if len(chunk) > 1 and (row := self._con.execute(erred).fetchone()):
                 raise RuleError(f"{row[0]} failed on copies of {len(chunk)} windows")
             stays = self._con.execute(
-                statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_NS}
+                statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_POINT_TOLERANCE_NS}
             ).fetchall()
         found: list[dict[int, OutcomeInCopies]] = [{} for _ in chunk]
         for finding_no, copy_no, keeps, margin in stays:
@@ -238,13 +238,15 @@ class RobustnessJudge:
 
 def _next_windows(drives: Mapping[str, Drive], questions: Sequence[RobustnessQuestion]) -> list[Window]:
     """Return the windows to judge next, with all copies at once if that costs less than another pass."""
-    found = windows_to_judge(drives, questions, N_COPIES)
-    more = sum(window.n_states * (N_COPIES[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1)
+    found = windows_to_judge(drives, questions, N_COPIES_TO_SETTLE)
+    more = sum(
+        window.n_states * (N_COPIES_TO_SETTLE[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1
+    )
     if more > MOST_STATES_FOR_ONE_PASS:
         return found
     for question in questions:
         question.is_hasty = True
-    return windows_to_judge(drives, questions, N_COPIES)
+    return windows_to_judge(drives, questions, N_COPIES_TO_SETTLE)
 
 
 def _copy_and_question_rows(

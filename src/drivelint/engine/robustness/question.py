@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.engine.robustness.window import Extent
 
-N_COPIES: Final = (20, 32, 100)
+N_COPIES_TO_SETTLE: Final = (20, 32, 100)
 """The numbers of judged copies after which a question may be settled.
 
 32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32 keep it with a probability of 3.4 %, and at
 least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of `copies`: a block has errors from the smallest to
 the largest."""
-FAR_STANDARD_DEVIATIONS: Final = 5.0
+FAR_FROM_ZERO_STANDARD_DEVIATIONS: Final = 5.0
 """20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
-LEAST_KEEPING_SHARE: Final = 0.95
+LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING: Final = 0.95
 """A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
-SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
+SMALL_MARGIN_BY_UNIT: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
-NOT_FAR_MULTIPLE: Final = 10.0
-"""For margins below this multiple of `SMALL_MARGIN`, 20 copies will probably not suffice."""
+SMALL_MARGIN_MULTIPLE_FOR_LARGER_FIRST_PASS: Final = 10.0
+"""For margins below this multiple of `SMALL_MARGIN_BY_UNIT`, 20 copies will probably not suffice."""
 
 
 @dataclass
@@ -68,25 +68,33 @@ class RobustnessQuestion:
 
     def _is_margin_within(self, n_small_margins: float) -> bool:
         margin = self.finding["margin"]
-        return margin is not None and abs(margin) <= n_small_margins * SMALL_MARGIN.get(self.rule.unit or "", 0.0)
+        return margin is not None and abs(margin) <= n_small_margins * SMALL_MARGIN_BY_UNIT.get(
+            self.rule.unit or "", 0.0
+        )
 
     @property
     def next_copy_numbers(self) -> range:
         """The numbers of the copies to judge next."""
-        goal = N_COPIES[-1] if self.is_hasty else next((n for n in N_COPIES if n > self.n_copies), N_COPIES[-1])
+        goal = (
+            N_COPIES_TO_SETTLE[-1]
+            if self.is_hasty
+            else next((n for n in N_COPIES_TO_SETTLE if n > self.n_copies), N_COPIES_TO_SETTLE[-1])
+        )
         return range(self.n_copies + 1, max(goal, self._n_copies_in_first_pass) + 1)
 
     @property
     def _n_copies_in_first_pass(self) -> int:
         """The number of copies in the first pass: 32 if 20 will probably not suffice."""
-        return N_COPIES[self.finding["margin"] is None or self._is_margin_within(NOT_FAR_MULTIPLE)]
+        return N_COPIES_TO_SETTLE[
+            self.finding["margin"] is None or self._is_margin_within(SMALL_MARGIN_MULTIPLE_FOR_LARGER_FIRST_PASS)
+        ]
 
     @property
     def is_settled(self) -> bool:
         """Whether enough copies were judged."""
-        few, more, most = N_COPIES
+        few, more, most = N_COPIES_TO_SETTLE
         if self.n_copies >= most or (
-            self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_KEEPING_SHARE) * most
+            self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) * most
         ):
             return True
         if self.n_stays < self.n_copies or self.is_near_threshold or self.is_doubtful:
@@ -97,16 +105,20 @@ class RobustnessQuestion:
     def _are_margins_far_from_zero(self) -> bool:
         """Whether the margins of the copies are far from 0."""
         known = [margin for margin in self.margins if margin is not None]
-        if len(known) < max(len(self.margins), N_COPIES[0]):
+        if len(known) < max(len(self.margins), N_COPIES_TO_SETTLE[0]):
             return False
-        return abs(float(np.mean(known))) >= FAR_STANDARD_DEVIATIONS * float(np.std(known))
+        return abs(float(np.mean(known))) >= FAR_FROM_ZERO_STANDARD_DEVIATIONS * float(np.std(known))
 
     @property
     def is_finding_certain(self) -> bool:
         """Whether the copies show that the finding is certain, not only possible."""
-        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_KEEPING_SHARE * self.n_copies
+        return (
+            self.n_copies > 0
+            and self.is_settled
+            and self.n_stays >= LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING * self.n_copies
+        )
 
-    def add_copies(
+    def add_results_of_copies(
         self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()
     ) -> None:
         """Add the results of a window of the drive that was judged in several copies.
@@ -119,32 +131,37 @@ class RobustnessQuestion:
         margin, whole = self.finding["margin"], margins.get(0)
         same = 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6))
         if not same:
-            self.restart_with_size(self.size + 1)
-        elif self._has_all_steps_of_finding or self._may_undecided_copies_be_lost(
+            self.restart_with_window_size(self.size + 1)
+        elif self._has_window_all_steps_of_finding or self._may_undecided_copies_count_as_lost(
             numbers, {*margins, *passes}, len(margins) - 1
         ):
             self.n_copies = numbers[-1]
             self.n_stays += len(margins) - 1
             self.margins += [margin for number, margin in margins.items() if number]
         else:
-            self.restart_with_size(self.size + 1)
+            self.restart_with_window_size(self.size + 1)
             self.is_doubtful = True
 
     @property
-    def _has_all_steps_of_finding(self) -> bool:
+    def _has_window_all_steps_of_finding(self) -> bool:
         """Whether the window contains every step that can keep the finding; the first window may have only a part of a stretch."""
         start, end = window_span_ns(self)
         whole = start <= self.finding["t_start_ns"] and end >= self.finding["t_end_ns"]
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
-    def _may_undecided_copies_be_lost(
+    def _may_undecided_copies_count_as_lost(
         self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int
     ) -> bool:
         """Return whether undecided copies may count as lost: there are none, or the finding is only possible even if they keep it."""
-        may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
-        return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_KEEPING_SHARE * N_COPIES[-1]
+        may_stay = (
+            self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES_TO_SETTLE[-1] - numbers[-1]
+        )
+        return (
+            set(conclusive_copies) >= set(numbers)
+            or may_stay < LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING * N_COPIES_TO_SETTLE[-1]
+        )
 
-    def restart_with_size(self, size: int) -> None:
+    def restart_with_window_size(self, size: int) -> None:
         """Discard the results, and continue with this size of window; with the size `N_WINDOW_SIZES`, the finding gets no count."""
         self.size, self.n_copies, self.n_stays, self.margins, self.extent = size, 0, 0, [], None
 

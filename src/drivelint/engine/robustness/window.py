@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 N_WINDOW_SIZES: Final = 3
 """The number of window sizes. Size 0 is some seconds around the worst step; sizes 1 and 2 are larger, if that is not enough."""
-NEAR_ACTOR_M_BY_SIZE: Final = (10.0, 25.0, 100.0)
+NEAR_ACTOR_M_BY_WINDOW_SIZE: Final = (10.0, 25.0, 100.0)
 """For each size: actors that are always farther than this from the ego, along x or y, are left out."""
-LONGEST_WHOLE_STRETCH_NS: Final = 3_000_000_000
+LONGEST_STRETCH_WHOLLY_IN_FIRST_WINDOW_NS: Final = 3_000_000_000
 """The first window contains the whole stretch of a finding that is at most this long."""
-SIZE_1_AROUND_STEP_NS: Final = 10_000_000_000
+MOST_AROUND_WORST_STEP_IN_WINDOW_1_NS: Final = 10_000_000_000
 """A window of size 1 is limited to this time before and after the worst step of a stretch."""
 
 
@@ -134,7 +134,7 @@ class Window:
         rows = np.flatnonzero((t_ns >= extent.from_ns) & (t_ns <= extent.to_ns))
         t_ns, actors = t_ns[rows], states["actor_id"].take(rows)
         own = pc.equal(actors, self.ego_id).to_numpy(zero_copy_only=False)
-        near, beyond = np.ones(len(rows), dtype=bool), NEAR_ACTOR_M_BY_SIZE[extent.size]
+        near, beyond = np.ones(len(rows), dtype=bool), NEAR_ACTOR_M_BY_WINDOW_SIZE[extent.size]
         for axis in ("x_m", "y_m"):
             place = floats(states[axis])[rows]
             known = np.flatnonzero(own & np.isfinite(place))
@@ -197,12 +197,12 @@ def window_span_ns(question: FindingWithCopies) -> tuple[int, int]:
             (AROUND_STEP, AROUND_STEP_OF_OVERTAKE) if ref is None else (AROUND_REFERENCE, AROUND_REFERENCE_OF_OVERTAKE)
         )
         before, after = around[question.is_about_overtakes]
-        if ref is None and finding["t_end_ns"] - finding["t_start_ns"] <= LONGEST_WHOLE_STRETCH_NS:
+        if ref is None and finding["t_end_ns"] - finding["t_start_ns"] <= LONGEST_STRETCH_WHOLLY_IN_FIRST_WINDOW_NS:
             steps = (finding["t_start_ns"], finding["t_end_ns"])
         return min(steps) - before, max(steps) + after
     start, end = (
-        max(finding["t_start_ns"], worst - SIZE_1_AROUND_STEP_NS),
-        min(finding["t_end_ns"], worst + SIZE_1_AROUND_STEP_NS),
+        max(finding["t_start_ns"], worst - MOST_AROUND_WORST_STEP_IN_WINDOW_1_NS),
+        min(finding["t_end_ns"], worst + MOST_AROUND_WORST_STEP_IN_WINDOW_1_NS),
     )
     before, after = 2_000_000_000, 1_000_000_000
     if ref is not None:

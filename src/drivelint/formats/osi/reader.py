@@ -25,7 +25,7 @@ from drivelint.drive.trace import (
     QualityFinding,
     Recording,
     States,
-    single_map,
+    single_map_or_finding,
 )
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
@@ -103,7 +103,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     if not batches:
         raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.cause})")
     recording = _recording("osi-mcap", batches, first_message, np.array(log_ns, np.uint64))
-    own, several = single_map(maps)
+    own, several = single_map_or_finding(maps)
     if maps:
         recording.embedded_map = own
     recording.findings += [

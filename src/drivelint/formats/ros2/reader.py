@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.drive.ego import MOST_SIZE_DIFFERENCE_M
+from drivelint.drive.ego import MOST_UNREPORTED_SIZE_DIFFERENCE_M
 from drivelint.drive.lost_time import times_of_lost_rows
-from drivelint.drive.trace import QualityFinding, Recording, States, single_map
+from drivelint.drive.trace import QualityFinding, Recording, States, single_map_or_finding
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
@@ -131,7 +131,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     _add_signals(recording, log, own_times=own_times)
     recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
     recording.frames_ns, recording.ends_apart_ns = log.times_of_topics(parts, own_times=own_times), TOPICS_APART_NS
-    recording.embedded_map, trouble = single_map(_topic_by_map(log))
+    recording.embedded_map, trouble = single_map_or_finding(_topic_by_map(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = frame_times_and_start(list(parts.values()))
     recording.fixed_frame = fixed
@@ -236,7 +236,7 @@ def _ego_poses_by_transforms_and_has_centre(
 
 def _centre_mismatch_findings(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
-    if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_SIZE_DIFFERENCE_M:
+    if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_UNREPORTED_SIZE_DIFFERENCE_M:
         return []
     message = (
         f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states "

@@ -28,7 +28,7 @@ from drivelint.formats.search import why_unreadable
 from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import FINDING_ENTRY_COLUMNS, evidence_values_of_rules, sha256_by_path
 from drivelint.pack.inputs import request_with_present_paths
-from drivelint.result.certainty import LEAST_KEEPING_SHARE
+from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import group_rows
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
@@ -165,7 +165,7 @@ def _rows_by_drive_key(rows: pa.Table) -> dict[str, pa.Table]:
 
 def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
     """Return the worst findings, each with the key of its drive, in the order of reports. `max_findings`: None: all findings."""
-    sql = statement("audit/worst_findings", least_share=str(LEAST_KEEPING_SHARE))
+    sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
     found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
     return found
 
