@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from drivelint.casefile import binding_errors
 from drivelint.casefile import commands as workshop
 from drivelint.errors import ExitCode
 from tests.casefile.speed_rule import measured, said_of, with_cases
@@ -82,6 +83,16 @@ def test_all_errors_of_header_and_sql_are_told_with_their_lines(tmp_path: Path) 
 )
 def test_an_error_hides_no_other(tmp_path: Path, changes: dict[str, str], lines: list[int]) -> None:
     assert list(changed_rule(tmp_path, "invariant", changes)) == lines
+
+
+@pytest.mark.parametrize("second", ["DROP TABLE ego_state", "CREATE TABLE t AS SELECT 1", "SELECT 1"])
+def test_nothing_of_a_refused_section_is_executed(tmp_path: Path, second: str) -> None:
+    for name, begin in (("first", f"{second}; SELECT"), ("last", "SELECT")):
+        end = f"; {second}" if name == "last" else ""
+        changes = {"29 | SELECT": begin, "30 | FROM ego_state": f"FROM ego_state{end}", "24 | speed_mps": "sped_mps"}
+        said = changed_rule(tmp_path / name, "invariant", changes)
+        assert list(said) == [24, 29 if name == "first" else 30]
+    assert binding_errors._binding_database().execute("SELECT count(*) FROM ego_state").fetchall() == [(0,)]
 
 
 def test_all_errors_of_cases_are_told(tmp_path: Path) -> None:

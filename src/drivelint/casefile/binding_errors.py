@@ -80,6 +80,7 @@ def _binding_database() -> duckdb.DuckDBPyConnection:
     """Return the process's database for binding SQL, which may be that of a refused rule: it is locked, and its tables are empty."""
     con = store.connect(threads=1)
     con.execute("SET errors_as_json=true")
+    con.execute("PRAGMA disable_optimizer")  # it would compute constant expressions
     store.lock_down(con)
     return con
 
@@ -93,9 +94,12 @@ def _bind(
     """
     problems: list[tuple[int, str]] = []
     try:
-        names = [name for each in con.extract_statements(section.sql) for name in each.named_parameters]
+        statements = con.extract_statements(section.sql)
     except duckdb.Error:
         return None, problems  # reading the rule reports wrong syntax
+    if [each.type for each in statements] != [duckdb.StatementType.SELECT]:
+        return None, problems  # EXPLAIN would execute the second of two statements; reading the rule reports them
+    names = statements[0].named_parameters
     sql = with_values(section.sql.rstrip().rstrip(";"), {name: _literal(defaults.get(name)) for name in names})
     is_changed = False
     for _ in range(_MAX_ERRORS):
