@@ -27,6 +27,8 @@ _MEMORY_LIMIT_TOO_LOW_TEXT: Final = (
 )
 MAX_ERROR_LENGTH: Final = 2000
 """The most characters of an error that are shown: a damaged file may contain a name of a megabyte."""
+MAX_PROBLEM_LINES: Final = 100
+"""The most problems of one file that are shown."""
 
 
 class DriveLintError(Exception):
@@ -41,12 +43,7 @@ class DriveLintError(Exception):
 
     def __str__(self) -> str:
         """Return the message; the middle of a very long message is left out."""
-        text = super().__str__()
-        return (
-            text
-            if len(text) <= MAX_ERROR_LENGTH
-            else f"{text[: MAX_ERROR_LENGTH // 2]} ... {text[-MAX_ERROR_LENGTH // 2 :]}"
-        )
+        return _shortened(super().__str__())
 
     def _render_traceback_(self) -> list[str]:
         """Return what IPython shows: on the first call the message alone, on later calls (`%tb`) the traceback."""
@@ -63,6 +60,12 @@ class DriveLintError(Exception):
         return self.exit_code == ExitCode.TEMPFAIL
 
 
+def _shortened(text: str) -> str:
+    if len(text) <= MAX_ERROR_LENGTH:
+        return text
+    return f"{text[: MAX_ERROR_LENGTH // 2]} ... {text[-MAX_ERROR_LENGTH // 2 :]}"
+
+
 def _error_from_pickle(kind: type[DriveLintError], args: tuple[object, ...]) -> DriveLintError:
     """Return an error of this class without calling its `__init__`, which may need other arguments."""
     error = kind.__new__(kind)
@@ -74,7 +77,24 @@ class UsageError(DriveLintError):
     """The command line, a settings file or a mapping cannot be understood."""
 
 
-class RuleError(DriveLintError):
+class ProblemLinesError(DriveLintError):
+    """An error about a file, with a line for each of its problems."""
+
+    def __str__(self) -> str:
+        """Return the message, with no more than `MAX_PROBLEM_LINES` lines; the middle of a very long line is left out."""
+        lines = Exception.__str__(self).split("\n")
+        more = len(lines) - MAX_PROBLEM_LINES
+        told = [_shortened(line) for line in lines[:MAX_PROBLEM_LINES]]
+        return "\n".join(told if more <= 0 else [*told, f"... and {more} more problems"])
+
+
+class SceneFileError(UsageError, ProblemLinesError):
+    """A file of scenes has errors."""
+
+    __str__ = ProblemLinesError.__str__
+
+
+class RuleError(ProblemLinesError):
     """A rule file has an error in its header, sections, parameters or SQL."""
 
 

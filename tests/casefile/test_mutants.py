@@ -119,6 +119,7 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
     assert proof.survivors == ("sense > -> >=", "params.limit * 0.9")
     assert not proof.ok
     assert "no case notices: params.limit * 0.9" in mutation.result_text(proof)
+    assert "with a value between the two numbers" in mutation.result_text(proof)
     assert mutation.summary_line([proof]) == "1 stable rule: 2 of 4 mutants noticed (50.0%)"
     assert mutation.noticed_share([proof]) < mutation.LEAST_NOTICED_SHARE
     assert mutation.summary_line([proof._replace(stable=False)]) == (

@@ -98,7 +98,8 @@ def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
     broken.write_text(text(INVARIANT | MEASURED | {"senze": "1"}, {"condition": SPEED}), encoding="utf-8")
     code, said = said_of(tmp_path)
     assert code is ExitCode.USAGE
-    assert f"REFUSED {broken}:4: unknown key 'senze'" in said
+    assert f"REFUSED {broken}:" in said
+    assert f"\n{broken}:4: unknown key 'senze'" in said
     assert "pack.rule: 6 of 7 checks" in said, "no case is not applicable"
     assert workshop.mutation_test(tmp_path, (), Said()) is ExitCode.USAGE
     assert said_of(tmp_path, "pack.rule")[0] is ExitCode.FAILED
@@ -258,5 +259,5 @@ def test_what_is_wrong_in_a_rule_is_said_with_its_line(
     rule.path.write_text(good.replace(*change), encoding="utf-8")
     with pytest.raises(RuleError) as caught:
         read_rule(rule.path)
-    assert str(caught.value).startswith(f"{rule.path}:{line}: ")
-    assert message in str(caught.value)
+    said = [each for each in str(caught.value).split("\n") if message in each]
+    assert [each.startswith(f"{rule.path}:{line}: ") for each in said] == [True], caught.value

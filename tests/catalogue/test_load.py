@@ -185,7 +185,9 @@ def test_all_that_is_wrong_in_a_file_is_told_at_once(tmp_path: Path) -> None:
     said = [line.partition("rule.sql:")[2] for line in str(caught.value).split("\n")]
     first = len(HEADER | GOOD) + 5
     assert [int(line.partition(":")[0]) for line in said[2:]] == [first + 1, first + 2, first + 2], said
-    assert ["'contcat' is no rule tag" in said[0], "use 'gb'" in said[1], "did you mean 'ego_state'" in said[4]] == [
+    numbers = [int(line.partition(":")[0]) for line in said]
+    assert numbers == sorted(numbers), "in the order of the lines"
+    assert ["use 'gb'" in said[0], "'contcat' is no rule tag" in said[1], "did you mean 'ego_state'" in said[4]] == [
         True
     ] * 3
     with pytest.raises(RuleError) as caught:

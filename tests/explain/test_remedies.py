@@ -32,7 +32,7 @@ def test_by_code(code: str, told: str) -> None:
     ("code", "asked", "told"),
     [
         ("null_value", "the track of object 3 ends: record it for longer", "the track of object 3 ends: record it for longer"),
-        ("only_a_bound", None, "a map that goes on, or a longer --sensor-range of check"),
+        ("only_a_bound", None, "a map that goes on, or a longer --sensor-range of check; for a duration, a log that begins earlier"),
         ("null_value", None, "what is NULL, or has no row, in the rows that it was judged on"),
     ],
 )  # fmt: skip

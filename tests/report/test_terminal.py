@@ -339,3 +339,31 @@ def test_the_worst_of_a_drive_of_several_egos_names_its_ego() -> None:
     found = [finding(ego_id="394")]
     assert any(re.search(r"^d1 .* s ego 394 ", line) for line in summary(result(rows, found, drives=[drive(n_egos=2)])))
     assert not any("ego 394" in line for line in summary(result(rows[:1], found, drives=[drive()])))
+
+
+def test_parameters_that_were_set_are_named() -> None:
+    given = [
+        {"name": "gap_m", "value": "3.0", "unit": "m", "overridden": True},
+        {"name": "time_s", "value": "2.0", "unit": "s", "overridden": False},
+    ]
+    text = shown(result([verdict("pass")], rules=[rule(params=given)]), verbose=False)
+    assert f"set for this run (--param): {rule()['rule_id']}.gap_m=3.0\n" in re.sub(r" +\n", "\n", text)
+    assert "time_s" not in text
+    assert "--param" not in shown(result([verdict("pass")]), verbose=False)
+
+
+def test_without_findings_the_command_explains_an_unknown_verdict() -> None:
+    unknown = verdict("unknown", reason_code="null_value", reason="the speed is not known")
+    text = shown(result([verdict("pass", occurrence=1), unknown]), verbose=False)
+    assert f"explain  drivelint explain {unknown['rule_id']}@{unknown['drive_id']} --in out" in text
+    assert "drivelint explain" not in shown(result([verdict("pass")]), verbose=False)
+
+
+def test_findings_of_draft_rules_are_counted_beside_the_exit_code() -> None:
+    drafts = [rule("ukhc.a", status="draft"), rule("ukhc.b", status="draft"), rule()]
+    failed = [verdict("fail", rule_id=name) for name in ("ukhc.a", "ukhc.b")]
+    found = [finding(rule_id=name, finding_id=name) for name in ("ukhc.a", "ukhc.b")]
+    run = result([*failed, verdict("pass")], found, rules=drafts)
+    assert exit_status(run) == (
+        ExitCode.OK, "nothing failed at or above severity critical; 2 findings of rules that are not stable do not count"
+    )  # fmt: skip

@@ -40,6 +40,8 @@ import yaml
 
 from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_and_factor, complete_scene, refuse_wrong_word
+from drivelint.catalogue.check import collect_problems, raise_problems
+from drivelint.catalogue.rule_file import in_order_of_lines
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
 from drivelint.phrases import nearest_word
@@ -110,44 +112,67 @@ def read_cases(rule: Rule) -> list[Case]:
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}:1: not UTF-8 at byte {error.start}") from error
     try:
-        cases = _parse_cases(file, text)
+        cases, problems = _parse_cases(file, text)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = (
             min(mark.line + 1, len(text.splitlines())) if mark else 1
         )  # PyYAML reports an early end after the last line
         raise RuleError(f"{file}:{line}: not YAML: {' '.join(str(error).split())}") from error
-    seen: dict[str, Case] = {}
-    for case in cases:
-        if case.name in seen:
-            raise RuleError(
-                f"{file}:{case.line}: case {case.name!r} has the name of the case in line {seen[case.name].line}"
-            )
-        seen[case.name] = case
-        if strange := sorted(case.params.keys() - rule.params.keys()):
-            known = ", ".join(rule.params) or "none"
-            raise RuleError(
-                f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
-            )
-        with _add_location_to_errors(rule, case):
-            _refuse_wrong_words(rule, case)
-        if "capability" not in rule.reads and (idle := sorted(set(case.missing_signals) - set(rule.requires))):
-            raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
+    problems += _case_problems(rule, cases)
+    if problems:
+        for case in cases:
+            with collect_problems(problems), _add_location_to_errors(rule, case):
+                merged_cases.judge([], complete_scene(rule, case.given_tables, case.missing_signals), {})
+    raise_problems(in_order_of_lines(problems, file))
     return cases
 
 
-def _refuse_wrong_words(rule: Rule, case: Case) -> None:
-    """Raise `RuleError` for an unknown word in `expect` or `missing`, or in a parameter that the rule compares with a column of words."""
+def _case_problems(rule: Rule, cases: Sequence[Case]) -> list[str]:
+    """Return the problems of the cases without those of their scenes, each with file, line and case."""
+    problems: list[str] = []
+    seen: dict[str, Case] = {}
+    for case in cases:
+        first = seen.setdefault(case.name, case)
+        if first is not case:
+            place = f"{cases_path(rule)}:{case.line}"
+            problems.append(f"{place}: case {case.name!r} has the name of the case in line {first.line}")
+        with collect_problems(problems), _add_location_to_errors(rule, case):
+            raise_problems([*_unknown_names(rule, case), *_wrong_words(rule, case)])
+    return problems
+
+
+def _unknown_names(rule: Rule, case: Case) -> Iterator[str]:
+    """Yield the parameters and missing signals of a case that the rule does not have."""
+    known = ", ".join(rule.params) or "none"
+    for name in sorted(case.params.keys() - rule.params.keys()):
+        near = nearest_word(name, rule.params)
+        meant = f"did you mean {near!r}?" if near else f"it has: {known}"
+        yield f"params: {rule.id} has no parameter {name!r}; {meant}"
+    if "capability" not in rule.reads:
+        idle = [signal for signal in case.missing_signals if signal not in rule.requires]
+        yield from (f"missing: {rule.id} does not require {signal!r}" for signal in idle if not _signal_problem(signal))
+
+
+def _wrong_words(rule: Rule, case: Case) -> Iterator[str]:
+    """Yield the unknown words in `expect` or `missing`, and in parameters that the rule compares with a column of words."""
     expected = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
     for row in expected:
         for name, value in row.items():
-            refuse_wrong_word("verdict", column_and_factor("verdict", name, "expect")[0], value, "expect")
+            try:
+                refuse_wrong_word("verdict", column_and_factor("verdict", name, "expect")[0], value, "expect")
+            except RuleError as error:
+                yield str(error)
     for name, value in case.params.items():
         if problem := parameter_problem(rule.sections, name, value):
-            raise RuleError(f"params.{name}: {problem}")
+            yield f"params.{name}: {problem}"
     for signal in case.missing_signals:
-        if problem := vocabularies()["signal"].problem(signal):
-            raise RuleError(f"missing: {problem}")
+        if problem := _signal_problem(signal):
+            yield f"missing: {problem}"
+
+
+def _signal_problem(signal: str) -> str | None:
+    return vocabularies()["signal"].problem(signal)
 
 
 def cases_path(rule: Rule) -> Path:
@@ -155,35 +180,34 @@ def cases_path(rule: Rule) -> Path:
     return rule.path.with_suffix(".cases.yml")
 
 
-def _parse_cases(file: Path, text: str) -> list[Case]:
-    """Return the cases of a file, each with its line. Errors: `RuleError`, `yaml.YAMLError`."""
+def _parse_cases(file: Path, text: str) -> tuple[list[Case], list[str]]:
+    """Return the cases of a file, each with its line, and the problems of the other cases. Errors: `RuleError`, `yaml.YAMLError`."""
     loader = OnOffAsTextLoader(text)
     root = loader.get_single_node()
     raw = loader.construct_document(root) if root else None
     if not isinstance(raw, list):
         raise RuleError(f"{file}:1: cases are a list: each begins with '- name: ...'")
     lines = [item.start_mark.line + 1 for item in root.value]
-    cases = []
+    keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
+    cases, problems = [], []
     for line, item in zip(lines, raw, strict=True):
         if not isinstance(item, dict) or "line" in item:
-            raise RuleError(
-                f"{file}:{line}: a case consists of 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}"
-            )
-        try:
-            cases.append(msgspec.convert({**item, "line": line}, Case))
-        except msgspec.ValidationError as error:
-            raise RuleError(
-                f"{file}:{line}: case {item.get('name')!r}: {error}{_similar_key_hint(str(error))}"
-            ) from error
-    return cases
+            problems.append(f"{file}:{line}: a case consists of 'key: value' pairs: {', '.join(keys)}")
+            continue
+        place = f"{file}:{line}: case {item.get('name')!r}"
+        unknown = [key for key in item if key not in keys]
+        problems += [f"{place}: unknown field `{key}`{_near_key(str(key), keys)}" for key in unknown]
+        if not unknown:
+            try:
+                cases.append(msgspec.convert({**item, "line": line}, Case))
+            except msgspec.ValidationError as error:
+                problems.append(f"{place}: {error}")
+    return cases, problems
 
 
-def _similar_key_hint(message: str) -> str:
-    """Return a hint with the valid key most similar to the unknown key in msgspec's message; '' if there is none."""
-    unknown = re.search(r"unknown field `([^`]+)`$", message)
-    keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
-    near = nearest_word(unknown[1], keys) if unknown else None
-    return f"; did you mean {near!r}?" if near else ""
+def _near_key(word: str, keys: Sequence[str]) -> str:
+    near = nearest_word(word, keys)
+    return f"; did you mean {near!r}?" if near else f"; known are {', '.join(keys)}"
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:
@@ -195,7 +219,12 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     Errors: `RuleError` for a cases file that cannot be read.
     """
     cases = read_cases(rule)
-    results = [run_case(rule, case) for case in cases]
+    results: list[CaseResult] = []
+    problems: list[str] = []
+    for case in cases:
+        with collect_problems(problems):
+            results.append(run_case(rule, case))
+    raise_problems(problems)
     if all(result.ok for result in results):  # else judging them together gives no new information
         mixed, codes = first_problem_and_reason_codes_of_merged_cases(rule, cases)
         never = unused_reasons_message(rule, codes)
@@ -250,7 +279,8 @@ def _add_location_to_errors(rule: Rule, case: Case) -> Iterator[None]:
     try:
         yield
     except RuleError as error:
-        raise RuleError(f"{case_location(rule, case)}: {error}") from error
+        where = case_location(rule, case)
+        raise RuleError("\n".join(f"{where}: {line}" for line in str(error).split("\n"))) from error
 
 
 def outcome_difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Final
 import duckdb
 
 from drivelint.casefile import mutation, run_cases
+from drivelint.casefile.binding_errors import unknown_columns
 from drivelint.casefile.scene import case_database
 from drivelint.catalogue import read_rule
 from drivelint.catalogue.check import error_message, line_of_error
 from drivelint.catalogue.load import rule_files, rule_id_of
-from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME
+from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME, in_order_of_lines
 from drivelint.errors import ExitCode, RuleError, UsageError
 from drivelint.evaluate import query_plans
 from drivelint.resources import folder
@@ -154,6 +155,11 @@ def _read_selected_rules(root: Path | None, rule_globs: Sequence[str]) -> Iterat
     for file in chosen:
         try:
             rule = read_rule(file)
+        except RuleError as error:
+            problems = [*str(error).split("\n"), *(unknown_columns(file) if file.is_file() else ())]
+            yield RuleError("\n".join(in_order_of_lines(list(dict.fromkeys(problems)), file)))
+            continue
+        try:
             _check_query_plans(rule)
         except RuleError as error:
             yield error
@@ -185,7 +191,8 @@ def _check_query_plans(rule: Rule) -> None:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:
         line = line_of_error(error, rule.path.read_text(encoding="utf-8"))
-        raise RuleError(f"{rule.path}:{line or 1}: {error_message(error)}") from error
+        first = f"{rule.path}:{line or 1}: {error_message(error)}"
+        raise RuleError("\n".join(in_order_of_lines(unknown_columns(rule.path) or [first], rule.path))) from error
     for plan in plans:
         _, found, below = plan.partition("BLOCKWISE_NL_JOIN")
         tables = " and ".join(name for name in rule.reads if re.search(rf"\.{name}\b", below)) or "two tables"

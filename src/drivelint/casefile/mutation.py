@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from drivelint.casefile.mutants import Mutant
     from drivelint.catalogue import Rule
 
+_SURVIVOR_ADVICE: Final = (
+    "     add a case that the changed rule judges differently: for a number, with a value between the two numbers"
+)
 SURVIVORS_FILE: Final = "survivors.toml"
 LEAST_NOTICED_SHARE: Final = 0.95
 """The share of the mutants of stable rules that must be noticed, even if survivors are listed."""
@@ -99,6 +102,7 @@ def result_text(result: MutationResult) -> str:
         [
             f"{'ok  ' if result.ok else 'FAIL'} {result.rule_id}: {result.problem or noticed}",
             *(f"     no case notices: {fault}" for fault in result.unlisted_survivors),
+            *([_SURVIVOR_ADVICE] if result.unlisted_survivors else []),
             *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in result.stale_listed_faults),
         ]
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import duckdb
 
+from drivelint.catalogue.check import collect_problems, raise_problems
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
 from drivelint.sql import store
@@ -48,8 +49,16 @@ def _column_defaults() -> dict[str, dict[str, Any]]:
 
 
 def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
-    """Return the rows of each table: the rows in the case, and rows derived from these. Errors: `RuleError`."""
-    scene = {table: _table_rows(table, blocks) for table, blocks in given_tables.items()}
+    """Return the rows of each table: the rows in the case, and rows derived from these.
+
+    Errors: `RuleError` with a line for each wrong table, column or word.
+    """
+    scene: dict[str, list[Row]] = {}
+    problems: list[str] = []
+    for table, blocks in given_tables.items():
+        with collect_problems(problems):
+            scene[table] = _table_rows(table, blocks)
+    raise_problems(problems)
     clock = scene.pop("clock", [{}])
     scene["step"] = _step_rows(scene, clock[0].get("max_gap_ns"))
     scene["clock"] = _clock_rows(scene["step"], clock)
@@ -88,10 +97,13 @@ def _table_rows(table: str, blocks: Any) -> list[Row]:
 
 def _block_rows(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
     columns: dict[str, Any] = {}
+    problems: list[str] = []
     for name, value in block.items():
-        column, scale = column_and_factor(table, name, where)
-        refuse_wrong_word(table, column, value, where)
-        columns[column] = _values_in_column_unit(value, scale)
+        with collect_problems(problems):
+            column, scale = column_and_factor(table, name, where)
+            refuse_wrong_word(table, column, value, where)
+            columns[column] = _values_in_column_unit(value, scale)
+    raise_problems(problems)
     lengths = {len(v) for v in columns.values() if isinstance(v, list)}
     if len(lengths) > 1:
         raise RuleError(f"{where}: columns of different length: {', '.join(str(n) for n in sorted(lengths))}")

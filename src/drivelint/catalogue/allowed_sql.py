@@ -8,6 +8,7 @@ from itertools import chain
 from typing import Final
 
 from drivelint.facts import toml_beside
+from drivelint.phrases import nearest_word
 from drivelint.sql import store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
@@ -40,3 +41,11 @@ def tables() -> frozenset[str]:
     """Return the tables that a rule may read: the tables of `schemas/` except outputs, and `ENGINE_TABLES`."""
     outputs = {table for file in _OUTPUT_SCHEMAS for table in store.column_comments(file)}
     return frozenset(store.column_comments().keys() - outputs) | ENGINE_TABLES
+
+
+def unknown_table_message(name: str) -> str:
+    """Return the message that a rule cannot read this table, with the most similar table."""
+    near = nearest_word(name, tables())
+    return f"there is no table {name!r} for rules; " + (
+        f"did you mean {near!r}?" if near else "they read the tables of schemas/*.sql only"
+    )

@@ -16,7 +16,7 @@ import duckdb
 from drivelint.catalogue import allowed_sql
 from drivelint.catalogue.allowed_sql import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.phrases import hint, nearest_word
+from drivelint.phrases import nearest_word
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ __all__ = [
     "collect_problems",
     "error_message",
     "line_of_error",
+    "parameter_places",
     "raise_problems",
 ]
 
@@ -40,9 +41,10 @@ _TOO_DEEP = "too deeply nested to be checked: split it into CTEs"
 class SelectParts(NamedTuple):
     """The parts of one SELECT.
 
-    `places`: table or `$parameter` -> `file:line` of its first mention. `columns`: its columns, None if it uses `*`.
-    `needs`: tables that must have rows for the SELECT to return rows. `column_names`: all column names in the SELECT, in lower case,
-    except names used only in the text of a reason. `by_name`: it is a UNION BY NAME, whose later branches may add columns.
+    `places`: table, or `AS column` for a column that it returns -> `file:line` of its first mention.
+    `columns`: its columns, None if it uses `*`. `needs`: tables that must have rows for the SELECT to return rows.
+    `column_names`: all column names in the SELECT, in lower case, except names used only in the text of a reason.
+    `by_name`: it is a UNION BY NAME, whose later branches may add columns.
     """
 
     tables: frozenset[str]
@@ -130,7 +132,6 @@ def check_query(sql: str, file: str, line: int = 1) -> SelectParts:
         found.visit(part, ctes)
     raise_problems(found.refusals)
     parameters = frozenset(statement.named_parameters)
-    places = found.tables | {f"${name}": text.place_at(_parameter_offset(text.sql, name)) for name in parameters}
     try:
         needs = tables_needing_rows(node) & found.tables.keys()
     except RecursionError as error:
@@ -140,7 +141,7 @@ def check_query(sql: str, file: str, line: int = 1) -> SelectParts:
         frozenset(found.tables),
         parameters,
         _result_columns(node),
-        places,
+        found.tables | _places_of_columns(text, node),
         tuple(found.reasons),
         needs,
         names,
@@ -170,10 +171,18 @@ def _parse_select(text: _SqlText) -> tuple[duckdb.Statement, Node]:
     return statements[0], tree["statements"][0]["node"]
 
 
-def _parameter_offset(sql: str, name: str) -> int | None:
-    """Return the byte offset of a parameter's first use, which the syntax tree does not contain."""
-    found = re.search(rf"\${re.escape(name)}\b", sql)
-    return len(sql[: found.start()].encode()) if found else None
+def parameter_places(sql: str, file: str, line: int) -> dict[str, str] | None:
+    """Return parameter -> `file:line` of its first use in SQL that begins at `line`; None if the SQL cannot be parsed."""
+    text = _SqlText(sql, file, line)
+    try:
+        names = {name for statement in parser().extract_statements(sql) for name in statement.named_parameters}
+    except duckdb.Error:
+        return None
+    content = sql.encode()
+    marks = [at for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.operator]
+    used = [(found[1].decode(), at) for at in marks if (found := re.compile(rb"\$(\w+)").match(content, at))]
+    offsets = dict.fromkeys(names) | {name: at for name, at in reversed(used) if name in names}
+    return {name: text.place_at(at) for name, at in offsets.items()}
 
 
 class _SyntaxCollector:
@@ -217,10 +226,11 @@ class _SyntaxCollector:
         name = str(part.get("function_name", "")).lower()
         if name and name not in allowed_sql.functions():
             near = nearest_word(name, allowed_sql.functions())
+            what = f"function {name}()" if name.isidentifier() else f"operator {name.removesuffix('__postfix')}"
             meant = f"; did you mean {near}()?" if near else ""
             self._add_refusal(
                 part,
-                f"function {name}() is not allowed in a rule{meant}: only functions that always return the same value and "
+                f"{what} is not allowed in a rule{meant}: only functions that always return the same value and "
                 "use nothing but the tables, and the library's macros",
             )
         if name in allowed_sql.NEEDING_ORDER_BY and not _has_order_by(part):
@@ -249,9 +259,7 @@ class _SyntaxCollector:
         if whole in ctes:
             return
         if whole not in allowed_sql.tables():
-            near = hint(whole, allowed_sql.tables())
-            known = near if near.startswith("did") else "they read the tables of schemas/*.sql only"
-            self._add_refusal(part, f"there is no table {whole!r} for rules; {known}")
+            self._add_refusal(part, allowed_sql.unknown_table_message(whole))
             return
         self.tables.setdefault(name, self._text.place_at(part["query_location"]))
 
@@ -318,3 +326,17 @@ def _result_columns(node: Node) -> tuple[str, ...] | None:
         return None
     names = tuple("" if item["class"] == "STAR" else column_name(item) for item in node["select_list"])
     return names if all(names) else None
+
+
+def _places_of_columns(text: _SqlText, node: Node) -> dict[str, str]:
+    """Return `AS column` -> `file:line` of the column's name, for a SELECT or the first branch of a UNION."""
+    while node["type"] == "SET_OPERATION_NODE":
+        node = branches(node)[0]
+    items, content = node.get("select_list", []), text.sql.encode()
+    offsets = [offset_of(item) or 0 for item in items]
+    found: dict[str, str] = {}
+    for item, start, end in zip(items, offsets, [*offsets[1:], len(content)], strict=True):
+        name = column_name(item)
+        alias = re.search(rf'\bas\s+"?{re.escape(name)}\b'.encode(), content[start : max(start, end)], re.IGNORECASE)
+        found.setdefault(f"AS {name}", text.place_at(start + alias.start() if alias else start))
+    return found

@@ -1,21 +1,17 @@
-"""Parses the header of a rule file: TOML in the leading comment lines. Unknown keys are refused."""
+"""The header of a rule file, TOML in the leading comment lines: its fields, and what they must not contradict."""
 
 from __future__ import annotations
 
 import re
-import tomllib
 from math import inf
-from typing import TYPE_CHECKING, Any, Final, Literal, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
 from drivelint.drive import conditions
-from drivelint.errors import RuleError
-from drivelint.phrases import hint
 from drivelint.reasons import signals
-from drivelint.reasons.reason_text import ReasonText
+from drivelint.reasons.reason_text import ReasonText  # noqa: TC001 - msgspec looks the field types up
 from drivelint.sql.words import Quantity, vocabularies
-from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +21,7 @@ Seconds = float | str
 """Seconds, or the name of the rule's parameter with the seconds."""
 
 _PARAM_NAME = re.compile(r"[a-z][a-z0-9_]*")
-_TABLE_LINE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
+TABLE_LINE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
 _KEY_LINE = re.compile(r"\s*([\w.\"' \t-]+?)\s*=")
 
 
@@ -66,7 +62,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT_TAG: Final = "contact"
 """Tag of the rules whose findings are contacts, found from touching boxes or from the speeds."""
-JUDGES_STANDING_EGO_TAG: Final = "standing"
+STANDING_TAG: Final = "standing"
 """Tag of the rules that also judge an ego that never moves."""
 EXCUSABLE_RULE_TAG: Final = "excuses"
 """Tag of the rules that may be kept although their title is false. The hypothesis states the excuse, such as overtaking."""
@@ -120,51 +116,14 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Reason code -> its text, for codes that only this rule gives by the macro `why`."""
 
 
-_STRUCT_OF_HEADER_TABLE: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
-
-
 def json_schema() -> dict[str, Any]:
     """Return the JSON schema of a rule's header, for editors and authors of packs."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Header)}
 
 
-def parse_header(text: str, where: str) -> Header:
-    """Parse the TOML `text`, whose line n is line n of the file `where`.
-
-    Errors: `RuleError` with file and line for invalid TOML, an unknown key (with the nearest known key), a wrong type, or
-    fields that contradict each other.
-    """
-    try:
-        raw = parse_toml(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        line = re.search(r"at line (\d+)", str(error))
-        raise RuleError(f"{where}:{line[1] if line else 1}: the header is not TOML: {error}") from error
-    try:
-        header = msgspec.convert(raw, Header)
-    except msgspec.ValidationError as error:
-        raise _rule_error(error, text, where) from error
-    if problems := [*_kind_problems(header), *_word_problems(header), *_number_problems(header)]:
-        raise RuleError("\n".join(f"{where}:{line_of_key(text, key)}: {message}" for key, message in problems))
-    return header
-
-
-def _rule_error(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
-    """Convert msgspec's error to a `RuleError` on one line, with file, line and the nearest known key."""
-    message = str(error)
-    place = re.search(r"at `\$\.?([^`]*)`", message)
-    path = place[1] if place else ""
-    unknown = re.search(r"unknown field `([^`]+)`", message)
-    keys = re.sub(r"\[[^\]]*\]", ".*", path)
-    if not unknown and (word := re.match(r"Invalid enum value '(.*)'", message)) and path in Header.__struct_fields__:
-        words = get_args(get_type_hints(Header)[path])
-        return RuleError(f"{where}:{line_of_key(text, keys)}: {path} = {word[1]!r}: {hint(word[1], words)}")
-    if not unknown:
-        return RuleError(f"{where}:{line_of_key(text, keys)}: header: {message}")
-    key = unknown[1]
-    known = _STRUCT_OF_HEADER_TABLE.get(re.split(r"\W", path)[0], Header)
-    nearest = hint(key, known.__struct_fields__)
-    line = line_of_key(text, f"{keys}.{key}" if keys else key)
-    return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")
+def contradictions(header: Header) -> list[tuple[str, str]]:
+    """Return (key, problem) for fields that contradict each other, and for words and numbers that a field cannot have."""
+    return [*_kind_problems(header), *_word_problems(header), *_number_problems(header)]
 
 
 def line_of_key(text: str, key: str) -> int:
@@ -176,7 +135,7 @@ def line_of_key(text: str, key: str) -> int:
     table: list[str] = []
     best, depth = 1, 0
     for n, line in enumerate(text.splitlines(), 1):
-        head, said = _TABLE_LINE.match(line), _KEY_LINE.match(line)
+        head, said = TABLE_LINE.match(line), _KEY_LINE.match(line)
         if head:
             table = _split_key(head[1])
         path = table if head else [*table, *_split_key(said[1])] if said else []

@@ -8,8 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from drivelint.catalogue.check import ENGINE_TABLES, SelectParts, check_query, collect_problems, raise_problems
-from drivelint.catalogue.header import Header, line_of_key, parse_header
+from drivelint.catalogue import allowed_sql
+from drivelint.catalogue.check import (
+    ENGINE_TABLES,
+    SelectParts,
+    check_query,
+    collect_problems,
+    parameter_places,
+    raise_problems,
+)
+from drivelint.catalogue.header import Header, line_of_key
+from drivelint.catalogue.header_reader import KEYS_OF_KIND, ReadHeader, read_header
 from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.rule_words import refuse_wrong_words
 from drivelint.errors import RuleError
@@ -18,7 +27,7 @@ from drivelint.reasons.reason_text import texts_of_shared_codes
 from drivelint.sql import store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
@@ -58,28 +67,27 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, chec
     if hidden := _HIDDEN_CHARACTER.search(text):
         line = text.count("\n", 0, hidden.start()) + 1
         raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: remove it")
-    toml, sections = split_sections(text, str(file))
     problems: list[str] = []
-    with collect_problems(problems):
-        header = parse_header(toml, str(file))
+    toml, sections = split_sections(text, str(file), problems)
+    reading = read_header(toml, str(file))
+    header = reading.header
+    problems += reading.problems
+    if header is not None and header.reference is not None:
+        with collect_problems(problems):
+            sections["reference"] = _event_table_section(
+                header.reference, sections, file, line_of_key(toml, "reference")
+            )
     queries: dict[str, SelectParts] = {}
     for name, section in sections.items():
         with collect_problems(problems):
             queries[name] = check_query(section.sql, str(file), section.sql_line)
-    raise_problems(problems)
-    if header.reference is not None:
-        event = sections["reference"] = _event_table_section(
-            header.reference, sections, file, line_of_key(toml, "reference")
-        )
-        queries["reference"] = check_query(event.sql, str(file), event.sql_line)
-    problems += _section_problems(header, sections, queries, file)
-    problems += _reads_problems(header, queries, f"{file}:{line_of_key(toml, 'reads')}")
-    problems += _param_problems(header, queries, file, toml)
-    problems += _reason_problems(header, queries, file, toml)
-    if check_words:
+    problems += _disagreements(reading, sections, queries, file, toml)
+    if header is not None and check_words and queries.keys() == sections.keys():
         with collect_problems(problems):
             _refuse_wrong_words(header, sections, file, toml)
-    raise_problems(problems)
+    if header is None or problems:
+        raise_problems(in_order_of_lines(problems, file))
+        raise AssertionError  # a header that cannot be read is a problem
     return Rule(
         **msgspec.structs.asdict(header),
         id=f"{pack}.{file.stem}",
@@ -99,6 +107,48 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, chec
     )
 
 
+def readable_sections(file: Path) -> tuple[dict[str, Section], dict[str, object]]:
+    """Return the sections of a rule file that may be invalid, and the defaults of its parameters; both empty for an unreadable file."""
+    text = file.read_text(encoding="utf-8", errors="replace")
+    sections: dict[str, Section] = {}
+    header = None
+    with collect_problems([]):
+        toml, sections = split_sections(text, str(file), [])
+        header = read_header(toml, str(file)).header
+        if header is not None and header.reference is not None:
+            sections["reference"] = _event_table_section(
+                header.reference, sections, file, line_of_key(toml, "reference")
+            )
+    return sections, {name: param.default for name, param in header.params.items()} if header else {}
+
+
+def in_order_of_lines(problems: Sequence[str], file: Path) -> list[str]:
+    """Return the problems `file:line: message` in the order of their lines."""
+
+    def line(problem: str) -> int:
+        found = re.match(r":(\d+):", problem.removeprefix(str(file)))
+        return int(found[1]) if found else 0
+
+    return sorted(problems, key=line)
+
+
+def _disagreements(
+    reading: ReadHeader, sections: dict[str, Section], queries: dict[str, SelectParts], file: Path, toml: str
+) -> Iterator[str]:
+    """Yield the problems between header and SQL, without those that a refused section or a doubtful key may only cause."""
+    header, doubtful, is_complete = reading.header, reading.doubtful_keys, queries.keys() == sections.keys()
+    if header is None:
+        return
+    if KEYS_OF_KIND.isdisjoint(doubtful):
+        yield from _section_problems(header, sections, queries, file)
+    if not {"reads", "kind"} & doubtful:
+        yield from _reads_problems(header, queries, f"{file}:{line_of_key(toml, 'reads')}", is_complete=is_complete)
+    if "params" not in doubtful:
+        yield from _param_problems(header, sections, file, toml)
+    if "reasons" not in doubtful and is_complete:
+        yield from _reason_problems(header, queries, file, toml)
+
+
 def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozenset[str]:
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
     declared = store.input_quantities_by_column()
@@ -115,10 +165,11 @@ def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozens
     return frozenset(used.difference(header.unaffected_by))
 
 
-def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
-    """Return the header's TOML (its line n is line n of the file), and name -> section.
+def split_sections(text: str, where: str, problems: list[str]) -> tuple[str, dict[str, Section]]:
+    """Return the header's TOML (its line n is line n of the file), and name -> section; add to the problems of the file.
 
-    Errors: `RuleError` for SQL before the first section, and for an unknown, repeated, empty or missing section.
+    Problems: an unknown, repeated, empty or missing section. A section with a misspelled name is taken for the one that is meant.
+    Errors: `RuleError` for SQL before the first section.
     """
     lines = text.splitlines()
     marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _SECTION_MARK.match(line))]
@@ -126,19 +177,25 @@ def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
     header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
     sections: dict[str, Section] = {}
     ends = [n for n, _ in marks[1:]] + [len(lines)]
-    for (start, name), end in zip(marks, ends, strict=False):
+    named = {name for _, name in marks}
+    for (start, written), end in zip(marks, ends, strict=False):
+        name = written
         if name not in SECTIONS:
-            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, prefix='@')}")
+            problems.append(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, prefix='@')}")
+            name = nearest_word(name, set(SECTIONS) - named) or name
         if name in sections:
-            raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
+            problems.append(f"{where}:{start + 1}: section @{name} stands twice")
+            continue
         below = lines[start + 1 : end]
         body = "\n".join(below).strip()
         if not body:
-            raise RuleError(f"{where}:{start + 1}: section @{name} is empty")
-        blank = next(n for n, line in enumerate(below) if line.strip())
-        sections[name] = Section(body, start + 1, start + 2 + blank)
-    if "condition" not in sections:
-        raise RuleError(f"{where}:{len(lines)}: section '-- @condition' is missing")
+            problems.append(f"{where}:{start + 1}: section @{name} is empty")
+            named.add(name)
+        elif name in SECTIONS:
+            blank = next(n for n, line in enumerate(below) if line.strip())
+            sections[name] = Section(body, start + 1, start + 2 + blank)
+    if "condition" not in sections and "condition" not in named:
+        problems.append(f"{where}:{len(lines)}: section '-- @condition' is missing")
     return "\n".join(header), sections
 
 
@@ -190,24 +247,29 @@ def _section_problems(
     for name, query in queries.items():
         where = f"{file}:{sections[name].line}: @{name}"
         if name != "reference":
-            yield from _column_problems(query.columns, *contracts[name], where)
+            yield from _column_problems(query, *contracts[name], where)
         elif query.columns is not None and ("ref_id" in query.columns or not set(_KEY_COLUMNS) <= set(query.columns)):
             yield (f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-    yield from _condition_problems(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
+    if "condition" in queries:
+        where = f"{file}:{sections['condition'].line}: @condition"
+        yield from _condition_problems(header, queries["condition"], where)
 
 
 def _column_problems(
-    columns: tuple[str, ...] | None, required_columns: tuple[str, ...], allowed_columns: tuple[str, ...], where: str
+    query: SelectParts, required_columns: tuple[str, ...], allowed_columns: tuple[str, ...], where: str
 ) -> Iterator[str]:
+    columns, section = query.columns, where.rpartition(" ")[2]
     if columns is None:
         yield (f"{where} must name every column it returns: no star, and AS for every expression")
         return
     if len(set(columns)) != len(columns):
         yield (f"{where} returns a column twice: {', '.join(columns)}")
-    if missing := [c for c in required_columns if c not in columns]:
+    stray = [c for c in columns if c not in allowed_columns]
+    meant = {nearest_word(c, allowed_columns) for c in stray}
+    if missing := [c for c in required_columns if c not in columns and c not in meant]:
         yield (f"{where} must return {', '.join(required_columns)}; {', '.join(missing)} missing")
-    if stray := [c for c in columns if c not in allowed_columns]:
-        yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed_columns)}")
+    for c in stray:
+        yield (f"{query.places[f'AS {c}']}: {section} returns the unknown column {c!r}; {hint(c, allowed_columns)}")
 
 
 def _condition_problems(header: Header, query: SelectParts, where: str) -> Iterator[str]:
@@ -222,36 +284,47 @@ def _condition_problems(header: Header, query: SelectParts, where: str) -> Itera
         yield (f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
-def _reads_problems(header: Header, queries: dict[str, SelectParts], place_of_reads: str) -> Iterator[str]:
-    """Yield differences between the header's `place_of_reads` and the tables that the SQL reads. `place_of_reads`: `file:line` of that
-    key."""
+def _reads_problems(
+    header: Header, queries: dict[str, SelectParts], place_of_reads: str, *, is_complete: bool
+) -> Iterator[str]:
+    """Yield differences between the header's `reads` and the tables that the SQL reads.
+
+    `place_of_reads`: `file:line` of that key. `is_complete`: the tables of all sections are known.
+    """
     given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
             yield (f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}")
     said = frozenset(header.reads)
+    unknown = sorted(said - allowed_sql.tables())
+    for name in unknown:
+        yield (f"{place_of_reads}: reads: {allowed_sql.unknown_table_message(name)}")
+    told = {nearest_word(name, allowed_sql.tables()) for name in unknown}
     for query in queries.values():
-        if undeclared := sorted(query.tables - ENGINE_TABLES - said):
+        if undeclared := sorted(query.tables - ENGINE_TABLES - said - told):
             yield (f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads")
-    if idle := sorted(said.difference(*(query.tables for query in queries.values()))):
+            told.update(undeclared)
+    idle = sorted(said.difference(unknown, *(query.tables for query in queries.values())))
+    if is_complete and idle:
         yield (f"{place_of_reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
-def _param_problems(header: Header, queries: dict[str, SelectParts], file: Path, toml: str) -> Iterator[str]:
-    for query in queries.values():
-        if strange := sorted(query.parameters - header.params.keys()):
-            name = strange[0]
-            near = nearest_word(name, header.params)
-            yield (
-                f"{query.places[f'${name}']}: ${name} is not a parameter of this rule; "
-                f"{f'did you mean ${near}? If not, ' if near else ''}add [params.{name}] to the header, with default, unit, why and source"
-            )
-    used = frozenset[str]().union(*(query.parameters for query in queries.values()))
-    used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
-    if unused := sorted(header.params.keys() - used):
+def _param_problems(header: Header, sections: dict[str, Section], file: Path, toml: str) -> Iterator[str]:
+    by_section = [parameter_places(section.sql, str(file), section.sql_line) for section in sections.values()]
+    places = {name: place for found in reversed(by_section) for name, place in (found or {}).items()}
+    meant = set()
+    for name in sorted(places.keys() - header.params.keys()):
+        near = nearest_word(name, header.params)
+        meant.add(near)
         yield (
-            f"{file}:{line_of_key(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
+            f"{places[name]}: ${name} is not a parameter of this rule; "
+            f"{f'did you mean ${near}? If not, ' if near else ''}add [params.{name}] to the header, with default, unit, why and source"
         )
+    times = (header.window_s, header.exempt_after_s, header.merge_gap_s)
+    used = places.keys() | {s for s in times if isinstance(s, str)} | meant
+    for name in sorted(header.params.keys() - used) if None not in by_section else ():
+        line = line_of_key(toml, f"params.{name}")
+        yield (f"{file}:{line}: parameter {name!r} is never used: bind it as ${name}")
 
 
 def _refuse_wrong_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
@@ -274,6 +347,6 @@ def _reason_problems(header: Header, queries: dict[str, SelectParts], file: Path
             continue
         if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
             yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
-    if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
-        line = line_of_key(toml, f"reasons.{unused[0]}")
-        yield (f"{file}:{line}: the reason {unused[0]!r} is never used: use it in why({unused[0]!r}), or remove it")
+    for code in sorted(header.reasons.keys() - {reason.code for reason in given}):
+        line = line_of_key(toml, f"reasons.{code}")
+        yield (f"{file}:{line}: the reason {code!r} is never used: use it in why({code!r}), or remove it")

@@ -21,18 +21,22 @@ def refuse_wrong_words(
     """Check the words in the SQL of a rule's sections, and in the defaults of its parameters.
 
     `place_of`: function from a section and a byte offset in its SQL, or from `params.NAME.default` and 0, to `file:line`.
-    Errors: `RuleError` for the first wrong word, with the nearest valid word.
+    Errors: `RuleError` with a line for each wrong word, with the nearest valid word.
     """
     try:
         found = _checked_queries(sections)
     except _DeepSectionError as error:
         raise RuleError(f"{place_of(error.section, 0)}: too deeply nested to be checked: split it into CTEs") from error
-    for name, checked in found.items():
-        for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0):
-            raise RuleError(f"{place_of(name, wrong.offset or 0)}: {wrong.message}")
+    problems = [
+        f"{place_of(name, wrong.offset or 0)}: {wrong.message}"
+        for name, checked in found.items()
+        for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0)
+    ]
     for name, param in params.items():
         if problem := parameter_problem(sections, name, param.default):
-            raise RuleError(f"{place_of(f'params.{name}.default', 0)}: parameter {name!r}: {problem}")
+            problems.append(f"{place_of(f'params.{name}.default', 0)}: parameter {name!r}: {problem}")
+    if problems:
+        raise RuleError("\n".join(dict.fromkeys(problems)))
 
 
 def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> str | None:

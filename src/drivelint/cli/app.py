@@ -27,6 +27,7 @@ from drivelint.errors import (
     LEAST_ADDRESS_SPACE_BYTES,
     DriveLintError,
     ExitCode,
+    ProblemLinesError,
     UsageError,
     describe_machine_error,
     memory_limit_of_process_bytes,
@@ -206,7 +207,7 @@ def main() -> NoReturn:
         )
         sys.stdout.flush()
     except DriveLintError as error:
-        _exit_with_error(str(error), error.exit_code)
+        _exit_with_error(str(error), error.exit_code, has_lines=isinstance(error, ProblemLinesError))
     except TyperException as error:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
@@ -283,6 +284,10 @@ def _default_options_of_settings_file() -> dict[str, Any]:
     return {name: values}
 
 
-def _exit_with_error(message: str, code: ExitCode) -> NoReturn:
-    streams.print_on_stderr(f"drivelint: error: {terminal_safe_line(message)}")
+def _exit_with_error(message: str, code: ExitCode, *, has_lines: bool = False) -> NoReturn:
+    """Print an error and exit. `has_lines`: it has a line per problem; the later ones are indented, unlike the lines of drivelint."""
+    first, *more = message.split("\n") if has_lines else [message]
+    streams.print_on_stderr(f"drivelint: error: {terminal_safe_line(first)}")
+    for line in more:
+        streams.print_on_stderr(f"  {terminal_safe_line(line)}")
     sys.exit(int(code))

@@ -37,7 +37,7 @@ SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"
 """Condition -> the signal of the map that provides it, if its name differs."""
 DEFAULT_REMEDY: Final = "what is NULL, or has no row, in the rows that it was judged on"
 """The remedy for a reason code without one; the text of the verdict is more specific."""
-_A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
+_MORE_DATA = "a map that goes on, or a longer --sensor-range of check; for a duration, a log that begins earlier"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
@@ -85,7 +85,7 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
         )
     return REMEDIES.get(code, "{advice}").format(
         object="the object" if object_id is None else f"object {object_id}",
-        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else DEFAULT_REMEDY),
+        advice=advice or (_MORE_DATA if code == "only_a_bound" else DEFAULT_REMEDY),
     )
 
 

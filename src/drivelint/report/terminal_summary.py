@@ -15,7 +15,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import plural, terminal_safe_line
+from drivelint.phrases import name_list, plural, terminal_safe_line
 from drivelint.report.inputs import LAW_LABEL, input_notes
 from drivelint.report.law import law_words
 from drivelint.report.outcome import (
@@ -278,7 +278,20 @@ def _lines_on_rules_and_inputs(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)]
+    return [
+        Text(first), *_parameter_lines(result), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)
+    ]  # fmt: skip
+
+
+def _parameter_lines(result: Result) -> list[Text]:
+    """Return a line with the parameters that the user set."""
+    found = [
+        f"{rule['rule_id']}.{param['name']}={param['value']}"
+        for rule in result.rules.to_pylist()
+        for param in rule["params"]
+        if param["overridden"]
+    ]
+    return [Text(f"set for this run (--param): {name_list(found)}")] if found else []
 
 
 def _profile_lines(result: Result) -> list[Text]:
@@ -290,26 +303,30 @@ def _profile_lines(result: Result) -> list[Text]:
 
 def _unknown_reason_lines(result: Result) -> list[Text]:
     """Return the reasons of unknown verdicts other than missing signals, the most frequent first."""
-    rows = (
-        counts.undecided_verdicts(result.verdicts)
-        .select(["verdict", "reason_code", "cause_code", "rule_id", "reason"])
-        .to_pylist()
-    )
-    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
-
-    def n_rules(verdicts: list[Row]) -> int:
-        return len({row["rule_id"] for row in verdicts})
-
-    groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
-    order = sorted(groups.items(), key=lambda group: (-n_rules(group[1]), -len(group[1]), group[0]))
+    order = _undecided_verdicts_by_reason(result)
     lines = []
-    for _, group in order[:MOST_REASONS]:
+    for group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
-        words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
+        words = f"{group[0]['verdict']} ({plural(_n_rules(group), 'rule')}{times}): {group[0]['reason']}"
         lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
+
+
+def _undecided_verdicts_by_reason(result: Result) -> list[list[Row]]:
+    """Return the undecided verdicts, except those of missing signals, in a group per reason; the most frequent reason first."""
+    columns = ["verdict", "reason_code", "cause_code", "rule_id", "drive_id", "reason"]
+    rows = counts.undecided_verdicts(result.verdicts).select(columns).to_pylist()
+    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
+    groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    return [
+        rows for _, rows in sorted(groups.items(), key=lambda group: (-_n_rules(group[1]), -len(group[1]), group[0]))
+    ]
+
+
+def _n_rules(verdicts: list[Row]) -> int:
+    return len({row["rule_id"] for row in verdicts})
 
 
 def _input_lines(result: Result) -> list[Text]:
@@ -338,11 +355,12 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))
         return lines
     lines.append(Text(f"open     {out}/report.html"))
-    if findings:
-        worst = findings[0]
-        name = f"{worst['rule_id']}@{worst['drive_id']}"
-        name = (
-            name if terminal_safe_line(name) == name else worst["finding_id"]
-        )  # the printed command must work in a shell
-        lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
+    unknown = [row for rows in _undecided_verdicts_by_reason(result) for row in rows if row["verdict"] == "unknown"]
+    if told := findings or unknown:
+        name = f"{told[0]['rule_id']}@{told[0]['drive_id']}"
+        is_safe = terminal_safe_line(name) == name  # the printed command must work in a shell
+        if findings and not is_safe:
+            name = findings[0]["finding_id"]
+        if findings or is_safe:
+            lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
     return lines

@@ -131,7 +131,8 @@ def _exit_statuses(result: Result) -> Iterator[ExitStatus]:
     if nothing := _why_nothing_decided(result):
         yield ExitStatus(ExitCode.OK, f"{nothing}; no rule of the run is stable")
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
-    yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
+    unstable = _findings_of_unstable_rules_words(result)
+    yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}{unstable}")
 
 
 def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
@@ -334,6 +335,16 @@ def _let_through_words(result: Result) -> str:
         f"{len(one_finding_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told
     ]
     return f" (of that severity {', '.join(through)})" if through else ""
+
+
+def _findings_of_unstable_rules_words(result: Result) -> str:
+    """Return how many severe findings do not gate because their rules are not stable, in words; '' for none."""
+    stable = set(_severe_rows_of_stable_rules(result, result.findings)["finding_id"].to_pylist())
+    gating = _gating_severities(result)
+    severe = [row for row in result.findings.to_pylist() if row["severity"] in gating]
+    n = len(one_finding_per_event([row for row in severe if row["finding_id"] not in stable]))
+    whose = "a rule that is not stable does" if n == 1 else "rules that are not stable do"
+    return f"; {plural(n, 'finding')} of {whose} not count" if n else ""
 
 
 def _unfixed_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:

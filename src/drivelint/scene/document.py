@@ -13,12 +13,12 @@ import msgspec
 import yaml
 
 from drivelint.casefile import OnOffAsTextLoader
-from drivelint.errors import UsageError
+from drivelint.errors import SceneFileError, UsageError
 from drivelint.phrases import hint
-from drivelint.scene.strange_words import problem_lines
+from drivelint.scene.strange_words import problems
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Sequence
     from pathlib import Path
 
 Side = Literal["left", "right"]
@@ -254,30 +254,40 @@ def _parse_scene_file(path: Path) -> SceneFile:
         raise UsageError(f"{path}:{mark.line + 1 if mark else 1}: not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(raw, dict):
         raise UsageError(f"{path}:1: a file of scenes has the keys roads and scenes")
-    for line, part in _parts_with_lines(raw, root):
-        for problem in problem_lines(part, SceneFile):
-            raise UsageError(f"{path}:{line}: {problem}")
+    _set_lines_of_scenes(raw, root)
+    found = [(_line_of(root, problem.keys), problem.message) for problem in problems(raw, SceneFile)]
+    if found:
+        raise SceneFileError("\n".join(f"{path}:{line}: {message}" for line, message in sorted(found)))
     try:
         return msgspec.convert(raw, SceneFile, strict=True)
     except msgspec.ValidationError as error:
         raise UsageError(f"{path}:{_line_of_scene(str(error), root)}: {error}") from error
 
 
-def _parts_with_lines(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the parts of a document with their lines, and set the key `line` of each scene."""
+def _set_lines_of_scenes(raw: dict[str, Any], root: Any) -> None:
+    """Set the key `line` of each scene."""
     for key_node, node in root.value:
-        key, value = str(key_node.value), raw[str(key_node.value)]
-        if key == "scenes" and isinstance(value, list):
+        value = raw[str(key_node.value)]
+        if key_node.value == "scenes" and isinstance(value, list):
             for scene, scene_node in zip(value, node.value, strict=True):
-                line = scene_node.start_mark.line + 1
                 if isinstance(scene, dict):
-                    scene["line"] = line
-                yield line, {key: [scene]}
-        elif key == "roads" and isinstance(value, dict):
-            for (name, layout), (name_node, _) in zip(value.items(), node.value, strict=True):
-                yield name_node.start_mark.line + 1, {key: {name: layout}}
-        else:
-            yield key_node.start_mark.line + 1, {key: value}
+                    scene["line"] = scene_node.start_mark.line + 1
+
+
+def _line_of(root: Any, keys: Sequence[str | int]) -> int:
+    """Return the line of the value to which keys and indices lead; if a part is missing, of what would contain it."""
+    node, line = root, 1
+    for key in keys:
+        if isinstance(node, yaml.MappingNode):
+            entries = ((key_node, value) for key_node, value in node.value if str(key_node.value) == str(key))
+            key_node, node = next(entries, (None, None))
+            if key_node is None:  # it comes from a merged mapping
+                break
+            line = key_node.start_mark.line + 1
+        elif isinstance(node, yaml.SequenceNode) and isinstance(key, int):
+            node = node.value[key]
+            line = node.start_mark.line + 1
+    return line
 
 
 def _line_of_scene(message: str, root: Any) -> int:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 from drivelint import catalogue
 from drivelint.convert import ConvertRequest, convert
-from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
+from drivelint.errors import DriveLintError, ExitCode, SceneFileError, TraceError, UsageError
 from drivelint.phrases import hint, nearest_word, plural
 from drivelint.reasons.reason_text import codes_in
 from drivelint.report.progress import Silent
@@ -163,9 +163,9 @@ def scene_test(
         raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
     rules = catalogue.load_rules(tuple(rules_dirs))
     scenes = scenes_of(texts, file.roads)
+    _refuse_wrong_expectations(path, texts, rules)
     for scene in scenes:
         try:
-            _refuse_wrong_expectations(scene, rules)
             files = scene.files()
         except DriveLintError as error:
             raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
@@ -208,11 +208,20 @@ def _unknown_rule_message(rule_id: str, rules: Mapping[str, Rule]) -> str:
     return f"no rule {rule_id!r}; {f'did you mean {near!r}?' if near else 'drivelint rules list shows them all'}"
 
 
-def _refuse_wrong_expectations(scene: Scene, rules: Mapping[str, Rule]) -> None:
-    for rule, said in scene.text.expect.items():
-        if rule not in rules:
-            raise UsageError(f"expect: {_unknown_rule_message(rule, rules)}")
-        expectation(said)
+def _refuse_wrong_expectations(path: Path, texts: Sequence[SceneEntry], rules: Mapping[str, Rule]) -> None:
+    """Raise `UsageError` with a line for each unknown rule and verdict that scenes expect."""
+    problems = []
+    for text in texts:
+        place = f"{path}:{text.line}: scene {text.name!r}: "
+        for rule, said in text.expect.items():
+            if rule not in rules:
+                problems.append(f"{place}expect: {_unknown_rule_message(rule, rules)}")
+            try:
+                expectation(said)
+            except UsageError as error:
+                problems.append(f"{place}{error}")
+    if problems:
+        raise SceneFileError("\n".join(problems))
 
 
 def _write_log(folder: Path, files: dict[str, bytes], to: Literal["mcap", "parquet"]) -> None:
