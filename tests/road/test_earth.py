@@ -56,9 +56,9 @@ def test_the_north_of_a_map_is_the_north() -> None:
     shifted = KARLSRUHE.replace("+lon_0=8.4", "+lon_0=8.4 +x_0=500000 +y_0=100000")
     for reference, x, y in ((KARLSRUHE, 0.0, 0.0), (shifted, 500_000.0, 100_000.0)):
         begin, north, east = placed(geo_of(xodr_with(reference)), (x, y), (x, y + 1000.0), (x + 1000.0, y))
-        assert begin == (pytest.approx(8.4, abs=1e-9), pytest.approx(49.0, abs=1e-9))
-        assert north == (pytest.approx(8.4, abs=1e-9), pytest.approx(49.0 + 1000.0 / 111_209.0, abs=1e-6))
-        assert east == (pytest.approx(8.4 + 1000.0 / 73_172.0, abs=1e-6), pytest.approx(49.0, abs=1e-6))
+        assert begin == pytest.approx((8.4, 49.0), abs=1e-9)
+        assert north == pytest.approx((8.4, 49.0 + 1000.0 / 111_209.0), abs=1e-6)
+        assert east == pytest.approx((8.4 + 1000.0 / 73_172.0, 49.0), abs=1e-6)
 
 
 def test_a_header_offset_turns_first_and_moves_then() -> None:

@@ -62,7 +62,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 CONTACT_TAG: Final = "contact"
 """Tag of the rules whose findings are contacts, found from touching boxes or from the speeds."""
-STANDING_TAG: Final = "standing"
+JUDGES_STANDING_EGO_TAG: Final = "standing"
 """Tag of the rules that also judge an ego that never moves."""
 EXCUSABLE_RULE_TAG: Final = "excuses"
 """Tag of the rules that may be kept although their title is false. The hypothesis states the excuse, such as overtaking."""
