@@ -165,6 +165,17 @@ def test_of_many_drives_most_must_be_decided() -> None:
     assert exit_status(few).code == ExitCode.NOT_JUDGED
     assert headline(few).label == "TOO LITTLE JUDGED", "as many rules were decided as not"
     assert "1 of the 2 rules that may apply could not be judged" in headline(few).sentence
+    most = replace(result(rows, drives=drives), min_judged=0.9)
+    assert headline(most).label == "TOO LITTLE JUDGED"
+
+
+def test_too_little_judged_is_said_although_there_are_findings() -> None:
+    rows = [verdict("fail", severity="minor"), verdict("unknown", rule_id="ukhc.other")]
+    of = result(rows, [finding(severity="minor")], rules=[rule(severity="minor"), rule("ukhc.other")], min_judged=0.9)
+    assert exit_status(of).code == ExitCode.NOT_JUDGED
+    words = "too little judged 1 minor finding in 1 of 1 drive; 1 of the 2 rules that may apply could not be judged"
+    assert [said.startswith(words) for said in heads(of)] == [True] * 3
+    assert "50 % of the rules that may apply were decided, fewer than 90 % (--min-judged)" in outcome_line(of)
 
 
 @pytest.mark.parametrize(

@@ -171,6 +171,7 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
         },
         "fail_on": fail_on,
         "counts": difference.counts(),
+        "events": difference.event_counts(),
         "gating": [entry.finding_id for entry in failing],
         **msgspec.to_builtins(difference),
     }
@@ -262,11 +263,13 @@ def why_not_gating(result: Result, row: Row, rule: Row | None) -> str:
 
 
 def gate_counts(gate: Gate) -> dict[str, Any]:
-    """Return a gate's counts as data for JSON."""
-    states = Counter(waiver.state for waiver in gate.waivers)
+    """Return a gate's counts as data for JSON. `events`: findings of a baseline, one per event; the other counts are of rows."""
+    states, before = Counter(waiver.state for waiver in gate.waivers), gate.baseline
     return {
         "today": gate.today,
-        "baseline": None if gate.baseline is None else {"name": gate.baseline.base_name} | gate.baseline.counts(),
+        "baseline": None
+        if before is None
+        else {"name": before.base_name, **before.counts(), "events": before.event_counts()},
         "waived_findings": len(gate.waived),
         "confidence": gate.confidence,
         "possible_findings": len(gate.possible),
