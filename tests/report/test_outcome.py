@@ -178,6 +178,16 @@ def test_too_little_judged_is_said_although_there_are_findings() -> None:
     assert "50 % of the rules that may apply were decided, fewer than 90 % (--min-judged)" in outcome_line(of)
 
 
+def test_a_rule_whose_signal_the_log_lacks_is_among_those_that_may_apply() -> None:
+    """The headline and `--min-judged` count the same rules."""
+    lacking = verdict("not_applicable", rule_id="ukhc.other", reason_code="unrecorded_indicator")
+    of = result(
+        [verdict("fail"), lacking], [finding()], rules=[rule(), rule("ukhc.other")], min_judged=0.9, fail_on="never"
+    )
+    assert headline(of).sentence.endswith("; 1 of the 2 rules that may apply could not be judged")
+    assert "50 % of the rules that may apply were decided" in exit_status(of).why
+
+
 @pytest.mark.parametrize(
     ("now", "why"),
     [

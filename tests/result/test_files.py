@@ -94,3 +94,13 @@ def test_a_folder_of_other_columns_says_what_to_do(tmp_path: Path) -> None:
     pq.write_table(pq.read_table(file).drop_columns(["occurrence"]), file)
     with pytest.raises(UsageError, match=r"occurrence.*check the drives again"):
         load_result(tmp_path)
+
+
+def test_no_thread_of_arrow_holds_a_file_of_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If one does while the interpreter ends, as after an error, the process aborts with exit code 134."""
+    write(result([verdict("fail")], [finding()]), tmp_path)
+    given: list[object] = []
+    read = pq.read_table
+    monkeypatch.setattr(pq, "read_table", lambda source, **options: given.append(source) or read(source, **options))
+    load_result(tmp_path)
+    assert {type(source) for source in given} == {pa.BufferReader}

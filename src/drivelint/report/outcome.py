@@ -15,7 +15,7 @@ from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
-from drivelint.result.model import exit_status, gating_findings, is_too_little_decided
+from drivelint.result.model import decision_counts, exit_status, gating_findings, is_too_little_decided
 from drivelint.result.text import number, subject
 
 if TYPE_CHECKING:
@@ -240,12 +240,8 @@ def _outcome_label(result: Result, has_findings: bool) -> str:
 
 def _count_undecided_rules(result: Result) -> _UndecidedRules:
     """Count the undecided rules, and the rules that may apply, per drive and ego."""
-    rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
-    where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
-    said = [{row["verdict"] for row in mine} for mine in where.values()]
-    n_decided = sum(bool(each & {"pass", "fail"}) for each in said)
-    n_open = sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said)
-    return _UndecidedRules(n_open, n_open + n_decided, len({key[:2] for key in where}) > 1)
+    n_decided, n = decision_counts(result.verdicts)
+    return _UndecidedRules(n - n_decided, n, len(counts.distinct_rows(result.verdicts, ["drive_id", "ego_id"])) > 1)
 
 
 def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label: str, *, is_all_judged: bool) -> str:
@@ -262,8 +258,7 @@ def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label:
     if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, because no rule applied: the situations of the rules did not occur"
     if label in {_MOSTLY_UNKNOWN, _TOO_LITTLE_JUDGED}:
-        open_rules = _count_undecided_rules(result)
-        return f"no findings, but {open_rules.headline_words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
+        return f"no findings, but {_count_undecided_rules(result).headline_words}"
     return "no findings" if is_all_judged else "no findings, but not everything could be judged"
 
 
