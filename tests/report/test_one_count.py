@@ -17,7 +17,7 @@ from drivelint.report import junit, markdown, sarif, summary, terminal, xqar
 from drivelint.result.counts import extra_rows_sentence, one_finding_per_event
 from drivelint.result.model import Result, exit_status
 from tests.report.pages import page
-from tests.report.synthetic import SDA, SECOND, finding, result, rule, verdict
+from tests.report.synthetic import SDA, SECOND, drive, finding, result, rule, verdict
 
 TWICE = [finding(), finding(profile="observed", margin=-3.0)]
 LATE = finding(finding_id="late", occurrence=1, t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND)
@@ -218,4 +218,33 @@ def test_a_touch_of_two_egos_is_one_result_that_names_both() -> None:
     assert "also found for ego 3, object 1" in found["message"]["text"]
     ((tag, text),) = junit_cases(of).values()
     assert (tag, len(text.splitlines())) == ("failure", 1)
-    assert text.endswith("also found for ego 3, object 1")
+    assert text.endswith("(also found for ego 3, object 1)")
+
+
+def test_a_gone_finding_is_one_error() -> None:
+    of = GateInputs(date(2026, 11, 29), run(*TWICE), "main").apply_to(UNKNOWN)
+    (suite,) = etree.fromstring(junit.render(of)).findall("testsuite[@name='baseline']")
+    assert (suite.get("tests"), suite.get("errors")) == ("1", "1")
+    (tag, text) = junit_cases(of)[f"{SDA} [nominal] of d1"]
+    assert (tag, ["[observed]" in line for line in text.splitlines()]) == ("error", [False, True])
+
+
+def test_findings_of_two_logs_with_the_same_content_are_two() -> None:
+    """They have the same ids; one changed, the other not."""
+    drives = [drive(), drive("d2", sha256="ab" * 32)]
+    both = [TWICE[0], TWICE[0] | {"drive_id": "d2"}]
+    rows = [verdict("fail"), verdict("fail", drive_id="d2")]
+    base = result(rows, [both[0], both[1] | {"margin": -20.0}], drives=drives)
+    of = GateInputs(date(2026, 11, 29), base, "main").apply_to(result(rows, both, drives=drives))
+    assert of.gate is not None
+    assert of.gate.baseline is not None
+    n = of.gate.baseline.event_counts()
+    assert (n["changed"], n["unchanged"]) == (1, 1)
+
+
+def test_an_expired_waiver_counts_an_overtake_once() -> None:
+    waiver = Waiver("w:1", "*", "ticket 17", "jo", "2026-01-31")
+    of = GateInputs(date(2026, 11, 29), waivers=(waiver,)).apply_to(run(*TWICE))
+    assert of.gate is not None
+    (warning,) = descriptions.waiver_warnings(of.gate)
+    assert warning.endswith("it has no effect; 1 finding matches it")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from drivelint.errors import ExitCode
-from drivelint.phrases import plural
+from drivelint.phrases import name_list, plural
 from drivelint.result import counts
 from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
 from drivelint.result.text import ego_name, number
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 MAX_LINES: Final = 50
 """Largest number of findings or reasons per kind on a terminal; JSON has all of them."""
+
+MOST_CHANGED_RULES: Final = 2
+"""Largest number of changed rules that a sentence names; it counts the others."""
 
 DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
@@ -90,7 +93,8 @@ def counts_sentence(n_by_status: Mapping[str, int], n_worse: int, n_fixed: tuple
 
 
 def judged_less_sentence(difference: Difference) -> str:
-    """Return a sentence about what the newer result judged less than the earlier one, or on another map; '' if there is nothing."""
+    """Return a sentence about what the newer result judged less than the earlier one, on another map, or by changed rules; '' if
+    there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
     parts = [f"{plural(n, 'verdict')} unknown that were pass or fail before{more}"] if n else []
@@ -103,6 +107,9 @@ def judged_less_sentence(difference: Difference) -> str:
     told = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
     if difference.other_maps:
         told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
+    if difference.changed_rules:
+        names = name_list(difference.changed_rules, MOST_CHANGED_RULES)
+        told.append(f"judged by other parameters or another version of a rule than in the baseline: {names}")
     return "; ".join(told)
 
 

@@ -71,7 +71,8 @@ def render(result: Result) -> bytes:
     if too_little := why_too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
     if gone := gating_unfixed_findings(result):
-        suites.append(("baseline", list(map(_unfixed_case, gone))))
+        events = counts.group_rows(gone, lambda entry: entry.event_key)
+        suites.append(("baseline", list(map(_unfixed_case, events.values()))))
     for name, mine in suites:
         counted = _append_suite(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
@@ -90,15 +91,15 @@ def _cases_of_drive_problems(drive: Row) -> Iterator[Case]:
         yield Case("the map fits the drive", "error", "map", [reason])
 
 
-def _unfixed_case(entry: ComparedFinding) -> Case:
-    """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed."""
-    name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
-    return Case(
-        f"{name} of {entry.drive_id}",
-        "error",
-        entry.standing,
-        [f"gone, but not fixed: {descriptions.finding_line(entry)}"],
-    )
+def _unfixed_case(event: Sequence[ComparedFinding]) -> Case:
+    """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed.
+
+    `event`: its entry under each profile.
+    """
+    first = event[0]
+    name = rule_name({"rule_id": first.rule_id, "profile": first.profile})
+    lines = [f"gone, but not fixed: {descriptions.finding_line(entry)}" for entry in event]
+    return Case(f"{name} of {first.drive_id}", "error", first.standing, lines)
 
 
 class _CaseLines(NamedTuple):
@@ -140,7 +141,8 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
         if kind:
             getattr(lines, kind).append(with_count(row["reason"], row["count_all"]))
     for event in events_by_status(result.gate, result.findings.to_pylist()):
-        add_failure(event.finding, "; ".join(filter(None, (line(event.finding), event.other_rows_words))))
+        also = f" ({event.other_rows_words})" if event.other_rows else ""
+        add_failure(event.finding, f"{line(event.finding)}{also}")
         for row in event.other_rows:
             if _case_key(row) != _case_key(event.finding):
                 add_failure(row, line(row), event.finding)
