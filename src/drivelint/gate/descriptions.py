@@ -108,8 +108,8 @@ def judged_less_sentence(difference: Difference) -> str:
     if difference.other_maps:
         told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
     if difference.changed_rules:
-        names = name_list(difference.changed_rules, MOST_CHANGED_RULES)
-        told.append(f"judged by other parameters or another version of a rule than in the baseline: {names}")
+        rules = name_list(difference.changed_rules, MOST_CHANGED_RULES)
+        told.append(f"judged by other parameters or another version of a rule than in the baseline: {rules}")
     return "; ".join(told)
 
 
