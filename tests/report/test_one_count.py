@@ -162,10 +162,10 @@ def test_an_overtake_under_two_profiles_is_one_failure_everywhere() -> None:
         f"{SDA} [nominal]": "failure",
         f"{SDA} [observed]": "skipped",
     }
-    assert "also under the profile observed (margin -3.00 m)" in cases[f"{SDA} [nominal]"][1]
+    assert "also under the profile observed, margin -3.00 m" in cases[f"{SDA} [nominal]"][1]
     assert cases[f"{SDA} [observed]"][1].startswith(f"fails too, counted in {SDA} [nominal]: 8.00 s")
     (found,) = sarif_results(of)
-    assert "also under the profile observed (margin -3.00 m)" in found["message"]["text"]
+    assert "also under the profile observed, margin -3.00 m" in found["message"]["text"]
     assert found["properties"]["profiles"] == ["nominal", "observed"]
     assert len(found["properties"]["findingIds"]) == 2
     assert len(list(etree.fromstring(xqar.render(of)).iter("Issue"))) == 1

@@ -98,12 +98,12 @@ class Event(NamedTuple):
 
     @property
     def other_rows_words(self) -> str:
-        """The other rows in words, such as "also under the profile observed (margin -3.00 m)"; '' if there are none."""
+        """The other rows in words, such as "also under the profile observed, margin -3.00 m"; '' if there are none."""
         return "; ".join(
             f"also found for {subject(row)}"
             if row["ego_id"] != self.finding["ego_id"]
             else f"also under the profile {row['profile']}"
-            + ("" if row["margin"] is None else f" (margin {number(row['margin'], row['unit'])})")
+            + ("" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}")
             for row in self.other_rows
         )
 
