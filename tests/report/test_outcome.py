@@ -185,7 +185,8 @@ def test_the_terminal_names_the_known_findings_that_are_worse() -> None:
     )
     lines = [line for line in screen(of) if line.startswith("worse ")]
     (line,) = lines
-    assert line.startswith("worse    critical: d1 at 8.00 s: ukhc.r162.safe-distance-ahead [nominal], ego 1, object 3")
+    name = "ukhc.r162.safe-distance-ahead [nominal]"
+    assert line == f"worse    critical: d1 at 8.00 s: {name}, ego 1, object 3: margin -7.00 m, was -6.00 m"
     assert not [line for line in screen(against(run([finding()]), run([finding()]))) if line.startswith("worse ")]
 
 

@@ -186,11 +186,14 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
 
 
 def finding_line(entry: ComparedFinding) -> str:
-    """Return a finding in one line: severity, place, rule, and the verdict of the other result there."""
+    """Return a finding in one line: severity, place, rule, and the verdict of the other result there.
+
+    A finding that is worse has both margins at the end of the line.
+    """
     profile = "" if entry.profile is None else f" [{entry.profile}]"
     who = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
-    margin = "" if entry.margin is None else f", margin {number(entry.margin, entry.unit)}"
+    margin = "" if entry.margin is None or entry.worse else f", margin {number(entry.margin, entry.unit)}"
     head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
     return f"{head}{_other_verdict_phrase(entry)}"
 
