@@ -298,3 +298,27 @@ def test_a_new_run_leaves_no_report_of_an_older_one(ran: Ran) -> None:
     ran(*check)
     assert not {"gate.json", "report.sarif"} & {path.name for path in Path("out").iterdir()}
     assert pq.read_table("out/findings.parquet").num_rows == 0
+
+
+def test_several_reports_are_written_by_one_command(ran: Ran, results: dict[str, Path]) -> None:
+    code, out, _ = ran("report", str(results["base"]), "--to", "sarif", "--to", "markdown")
+    assert (code, [Path(line).name for line in out.splitlines()]) == (0, ["report.sarif", "report.md"])
+    code, _, err = ran("check", SAFE, *ON_ROAD, *SDA, "--report", "sarif")
+    assert (code, "--out" in err) == (2, True)
+    command = [
+        "check",
+        SAFE,
+        *ON_ROAD,
+        *SDA,
+        "--no-annotate",
+        "--report",
+        "sarif",
+        "--report",
+        "markdown",
+        "--out",
+        "r",
+    ]
+    for _ in range(2):  # the second run writes the result of the first again
+        assert ran(*command)[0] == 0
+        assert {"report.sarif", "report.md", "junit.xml"} <= {path.name for path in Path("r").iterdir()}
+        shutil.rmtree("r")

@@ -215,6 +215,56 @@ def test_the_action_fails_where_the_check_does_and_shows_the_outcome(drives: Pat
     assert "${{" not in check["run"], "what is given is no part of the script"
 
 
+def action_step(folder: Path, **given: str) -> tuple[subprocess.CompletedProcess[str], list[str], str]:
+    """Run the action's check with a `drivelint` that only notes its words; return the run, these words, and the summary."""
+    action = yaml.safe_load((ROOT / ".github" / "action" / "action.yml").read_text(encoding="utf-8"))
+    (check,) = (step for step in action["runs"]["steps"] if step.get("id") == "check")
+    inputs = {name: about.get("default", "") for name, about in action["inputs"].items()} | given
+    env = {
+        name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda said: inputs[said[1]], text)
+        for name, text in check["env"].items()
+    }
+    (folder / "drivelint").write_text("#!/bin/sh\nprintf '%s\\n' \"$@\" > words\nexit 2\n", encoding="utf-8")
+    (folder / "drivelint").chmod(0o755)
+    files = {name: str(folder / name) for name in ("GITHUB_OUTPUT", "GITHUB_STEP_SUMMARY")}
+    done = run(check["run"], folder, PATH=f"{folder}{os.pathsep}{os.environ['PATH']}", **env, **files)
+    return (
+        done,
+        (folder / "words").read_text(encoding="utf-8").splitlines(),
+        Path(files["GITHUB_STEP_SUMMARY"]).read_text(),
+    )
+
+
+def test_inputs_of_the_action_are_words_or_lines(tmp_path: Path) -> None:
+    out = ["--out", "results"]
+    _, words, _ = action_step(tmp_path, logs="a.mcap  b.mcap", options="--fail-on major")
+    assert words == ["check", "a.mcap", "b.mcap", *out, "--fail-on", "major"]
+    _, words, _ = action_step(
+        tmp_path, logs="my drives/a b.mcap\n\nc.mcap\n", map="my road.xodr", options="--waivers\nmy waivers.toml"
+    )
+    assert words == [
+        "check",
+        "my drives/a b.mcap",
+        "c.mcap",
+        "--map",
+        "my road.xodr",
+        *out,
+        "--waivers",
+        "my waivers.toml",
+    ]
+    _, words, _ = action_step(tmp_path, logs="$(touch x); *", options="`touch y` \"'")
+    assert words == ["check", "$(touch", "x);", "*", *out, "`touch", "y`", "\"'"]
+
+
+def test_the_action_does_not_show_an_earlier_result_as_its_own(tmp_path: Path) -> None:
+    (tmp_path / "results").mkdir()
+    for name in ("summary.json", "report.md"):
+        (tmp_path / "results" / name).write_text("an earlier PASS", encoding="utf-8")
+    done, _, summary = action_step(tmp_path, logs="a.mcap", options="--wrong")
+    assert done.returncode == 2
+    assert summary == "## drivelint: exit 2, without a result: see the log of this step\n"
+
+
 @pytest.mark.ci
 def test_the_hooks_that_a_repository_takes_stop_a_commit(drives: Path) -> None:
     clientlib = pytest.importorskip(

@@ -186,3 +186,15 @@ def test_a_mistake_in_it_names_the_file(
     assert out == ""
     assert "drivelint.toml" in err
     assert len(err.splitlines()) == 1
+
+
+def test_a_wrong_parameter_names_the_file_only_if_it_stands_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    wrong = "ukhc.overtake-zone.margn_s=0.9"
+    written(tmp_path, f'param = ["{wrong}"]\nquiet = true')
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, "check", str(OVERTAKE / "safe.csv")) == 2
+    assert capfd.readouterr().err.endswith("it has: margin_s (see drivelint.toml)\n")
+    assert run(monkeypatch, "check", str(OVERTAKE / "safe.csv"), "--param", wrong) == 2
+    assert "drivelint.toml" not in capfd.readouterr().err

@@ -50,6 +50,24 @@ def test_workflows_and_action_keep_to_their_schemas(tmp_path: Path) -> None:
     assert faults("actions", ACTION) == ""
 
 
+def test_the_job_for_gitlab_keeps_to_its_schema_and_reports_as_junit(tmp_path: Path) -> None:
+    (job,) = (block.body for block in blocks(FOLDER / "ci.md") if block.mark == "workflow: gitlab")
+    (tmp_path / ".gitlab-ci.yml").write_text(job, encoding="utf-8")
+    assert yaml.safe_load(job)["drives"]["artifacts"]["reports"] == {"junit": "results/junit.xml"}
+    pytest.importorskip("check_jsonschema", reason="check-jsonschema is not installed: pip install check-jsonschema")
+    words = [
+        sys.executable,
+        "-m",
+        "check_jsonschema",
+        "--builtin-schema",
+        "vendor.gitlab-ci",
+        "--data-transform",
+        "gitlab-ci",
+    ]
+    done = subprocess.run([*words, str(tmp_path / ".gitlab-ci.yml")], check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 @pytest.mark.ci
 def test_a_workflow_that_github_refuses_is_a_fault(tmp_path: Path) -> None:
     text = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")

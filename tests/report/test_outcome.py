@@ -165,6 +165,54 @@ def test_of_many_drives_most_must_be_decided() -> None:
     assert exit_status(few).code == ExitCode.NOT_JUDGED
     assert headline(few).label == "TOO LITTLE JUDGED", "as many rules were decided as not"
     assert "1 of the 2 rules that may apply could not be judged" in headline(few).sentence
+    most = replace(result(rows, drives=drives), min_judged=0.9)
+    assert headline(most).label == "TOO LITTLE JUDGED"
+
+
+def test_too_little_judged_is_said_although_there_are_findings() -> None:
+    rows = [verdict("fail", severity="minor"), verdict("unknown", rule_id="ukhc.other")]
+    of = result(rows, [finding(severity="minor")], rules=[rule(severity="minor"), rule("ukhc.other")], min_judged=0.9)
+    assert exit_status(of).code == ExitCode.NOT_JUDGED
+    words = "too little judged 1 minor finding in 1 of 1 drive; 1 of the 2 rules that may apply could not be judged"
+    assert [said.startswith(words) for said in heads(of)] == [True] * 3
+    assert "50 % of the rules that may apply were decided, fewer than 90 % (--min-judged)" in outcome_line(of)
+
+
+def test_the_terminal_names_the_known_findings_that_are_worse() -> None:
+    of = against(
+        run([finding(), finding(profile="observed")]),
+        run([finding(margin=-7.0), finding(profile="observed", margin=-9.0)]),
+    )
+    lines = [line for line in screen(of) if line.startswith("worse ")]
+    (line,) = lines
+    name = "ukhc.r162.safe-distance-ahead [nominal]"
+    assert line == f"worse    critical: d1 at 8.00 s: {name}, ego 1, object 3: margin -7.00 m, was -6.00 m"
+    assert not [line for line in screen(against(run([finding()]), run([finding()]))) if line.startswith("worse ")]
+
+
+def test_parameters_that_are_set_are_told_and_so_is_an_older_baseline() -> None:
+    def of_margin(value: str, *, is_set: bool) -> Result:
+        given = [{"name": "margin_s", "value": value, "unit": "s", "overridden": is_set}]
+        return result([verdict("pass")], rules=[rule(params=given)])
+
+    loose = of_margin("0.1", is_set=True)
+    told = f"parameters: set for this run: {SDA}.margin_s = 0.1 s"
+    assert told in screen(loose)
+    assert told in markdown.render(loose).decode().replace("\\", "")
+    assert "parameters" not in "".join(screen(of_margin("0.5", is_set=False)))
+    words = f"judged by other parameters or another version of a rule than in the baseline: {SDA}"
+    assert words in headline(against(of_margin("0.5", is_set=False), loose)).sentence
+    assert words not in headline(against(loose, loose)).sentence
+
+
+def test_a_rule_whose_signal_the_log_lacks_is_among_those_that_may_apply() -> None:
+    """The headline and `--min-judged` count the same rules."""
+    lacking = verdict("not_applicable", rule_id="ukhc.other", reason_code="unrecorded_indicator")
+    of = result(
+        [verdict("fail"), lacking], [finding()], rules=[rule(), rule("ukhc.other")], min_judged=0.9, fail_on="never"
+    )
+    assert headline(of).sentence.endswith("; 1 of the 2 rules that may apply could not be judged")
+    assert "50 % of the rules that may apply were decided" in exit_status(of).why
 
 
 @pytest.mark.parametrize(

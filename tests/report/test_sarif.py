@@ -86,7 +86,8 @@ def test_the_log_is_valid_sarif(run: Result) -> None:
 def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
     (found,) = log(result(MIXED, [finding(x_m=1.5, y_m=-2.0, lanelet_id="117")]))["results"]
     assert (found["ruleId"], found["kind"], found["level"]) == (SDA, "fail", "error")
-    assert found["partialFingerprints"] == {"findingId/v1": f"d1-{SDA}-nominal-0"}
+    name = f"d1-{SDA}-nominal-0"
+    assert found["partialFingerprints"] == {"findingId/v1": name, "primaryLocationLineHash": name}
     assert found["message"]["text"].endswith("ego 1, object 3, profile nominal, 8.00 s")
     assert found["message"]["text"].startswith(
         "Not kept: room to overtake: because fail observed 58.00 m, required 64.00 m"

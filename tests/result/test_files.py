@@ -94,3 +94,17 @@ def test_a_folder_of_other_columns_says_what_to_do(tmp_path: Path) -> None:
     pq.write_table(pq.read_table(file).drop_columns(["occurrence"]), file)
     with pytest.raises(UsageError, match=r"occurrence.*check the drives again"):
         load_result(tmp_path)
+
+
+def test_no_thread_of_arrow_holds_a_file_of_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If one does while the interpreter ends, as after an error, the process aborts with exit code 134."""
+    write(result([verdict("fail")], [finding()]), tmp_path)
+    read, given = pq.read_table, set()
+
+    def noted(source: object, **options: bool) -> pa.Table:
+        given.add(type(source))
+        return read(source, **options)
+
+    monkeypatch.setattr(pq, "read_table", noted)
+    load_result(tmp_path)
+    assert given == {pa.BufferReader}

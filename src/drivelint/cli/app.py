@@ -207,7 +207,9 @@ def main() -> NoReturn:
         )
         sys.stdout.flush()
     except DriveLintError as error:
-        _exit_with_error(str(error), error.exit_code, has_lines=isinstance(error, ProblemLinesError))
+        _exit_with_error(
+            f"{error}{_settings_hint(str(error))}", error.exit_code, has_lines=isinstance(error, ProblemLinesError)
+        )
     except TyperException as error:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
@@ -254,6 +256,14 @@ def _command_words_of_error(error: Exception) -> str:
     while about is not None and about.parent is not None:
         about, words = about.parent, f"{about.info_name} {words}"
     return words
+
+
+def _settings_hint(message: str) -> str:
+    """Return the settings file in brackets if a message begins with an option that the command line lacks; '' otherwise."""
+    option = message.partition(" ")[0].rstrip(":")
+    is_given = any(word.partition("=")[0] == option for word in sys.argv)
+    found = None if is_given or not option.startswith("--") else find_settings()
+    return "" if found is None else f" (see {found})"
 
 
 _OPTIONS_REPLACING_MAP_SETTING: Final = frozenset({"--map", "--map-dir", "--help", "-h"})

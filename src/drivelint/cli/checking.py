@@ -72,6 +72,14 @@ def check(
     ] = None,
     min_judged: options.MinJudged = None,
     format_: options.FormatOption = "text",
+    report: Annotated[
+        list[options.ReportFormat] | None,
+        option(
+            "--report",
+            "html|junit|sarif|xqar|markdown",
+            "With --out: also write this report, as drivelint report does. report.html and junit.xml are always written. Repeatable.",
+        ),
+    ] = None,
     margins: Annotated[
         bool, option("--margins", None, "Also write margins.parquet, with a row per judged step.")
     ] = False,
@@ -201,7 +209,11 @@ def check(
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()
-    with say_earlier_folder_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with (
+        say_earlier_folder_on_failure(out),
+        working_folder(out, report or (), overwrite=overwrite) as work,
+        bar(quiet) as progress,
+    ):
         unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
@@ -210,7 +222,7 @@ def check(
             if gate_inputs is not None:
                 result = gate_inputs.apply_to(result)
             if out is not None:
-                grown = write(result, out, work, overwrite=overwrite)
+                grown = write(result, out, work, reports=report or (), overwrite=overwrite)
             return result
 
         try:

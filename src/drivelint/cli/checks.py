@@ -11,26 +11,28 @@ from drivelint.errors import UsageError
 from drivelint.phrases import name_list, terminal_safe, terminal_safe_json, terminal_safe_line
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from drivelint.incident import IncidentRequest
     from drivelint.result.model import Result
 
 
-def write_report_of_check(folder: Path, to: str, base_url: str | None) -> None:
-    """Write a report of a check into its folder, and print its name."""
+def write_reports_of_check(folder: Path, formats: Sequence[str], base_url: str | None) -> None:
+    """Write reports of a check into its folder, and print their names. `base_url`: only for Markdown."""
     from drivelint.report import markdown
     from drivelint.report.outputs import REPORT_FORMATS
     from drivelint.result.folder import add_file
     from drivelint.result.load import load_result
 
-    if base_url is not None and to != "markdown":
+    if base_url is not None and "markdown" not in formats:
         raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
-    name, render = REPORT_FORMATS[to]
     result = load_result(folder)
     warn_of_partial_result(folder, result)
-    add_file(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
-    typer.echo(terminal_safe_line(str(folder / name)))
+    for each in dict.fromkeys(formats):
+        name, render = REPORT_FORMATS[each]
+        add_file(folder, name, markdown.render(result, base_url) if each == "markdown" else render(result))
+        typer.echo(terminal_safe_line(str(folder / name)))
 
 
 def write_incident_sheet(request: IncidentRequest) -> None:

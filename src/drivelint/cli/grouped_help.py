@@ -17,6 +17,7 @@ _OPTIONS_BY_HEADING: Final = {
         "out",
         "overwrite",
         "format_",
+        "report",
         "margins",
         "keep_db",
         "annotate",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from enum import StrEnum
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
@@ -15,10 +16,20 @@ from drivelint.cli import completion
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+
+class ReportFormat(StrEnum):
+    """Formats of a report; an enumeration, because Typer has no lists of a `Literal`."""
+
+    HTML = "html"
+    JUNIT = "junit"
+    SARIF = "sarif"
+    XQAR = "xqar"
+    MARKDOWN = "markdown"
+
+
 Format = Literal["text", "json"]
 """Formats of a result on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
-ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
 SqlFormat = Literal["text", "csv", "json"]
 DiffFormat = Literal["text", "json", "markdown"]
 RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]

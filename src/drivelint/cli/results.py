@@ -18,14 +18,14 @@ from drivelint.phrases import terminal_safe_json
 def report(
     folder: Annotated[Path, argument("DIR", "The folder that check --out or audit --out wrote.")],
     to: Annotated[
-        options.ReportFormat,
+        list[options.ReportFormat] | None,
         option(
             "--to",
-            None,
+            "html|junit|sarif|xqar|markdown",
             "html: one page that opens offline; junit, sarif (2.1.0), xqar (ASAM): for servers and viewers; "
-            "markdown: for a comment on a pull request.",
+            "markdown: for a comment on a pull request. Repeatable. Default: html.",
         ),
-    ] = "html",
+    ] = None,
     *,
     incident: Annotated[
         str | None,
@@ -92,6 +92,7 @@ def report(
     """
     from drivelint.fleet_report.audit_views import is_audit, path_or_url
 
+    formats = to or [options.ReportFormat.HTML]
     of_the_sheet = pdf or trace is not None or map_ is not None
     of_an_audit = bool(by) or baseline is not None or drive_pages is not None or moments is not None
     if is_audit(dest := path_or_url(folder)):
@@ -99,9 +100,10 @@ def report(
             raise UsageError(
                 f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are only for a check"
             )
-        fleets.write_report_of_audit(
-            dest, to, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet
-        )
+        for each in dict.fromkeys(formats):
+            fleets.write_report_of_audit(
+                dest, each, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet
+            )
     elif of_an_audit:
         raise UsageError(
             f"--by, --baseline, --drive-pages and --moments are only for an audit, and {dest} is not an "
@@ -114,7 +116,7 @@ def report(
     elif of_the_sheet:
         raise UsageError("--pdf, --trace and --map are for an incident sheet: choose its finding with --incident")
     else:
-        checks.write_report_of_check(folder, to, base_url)
+        checks.write_reports_of_check(folder, formats, base_url)
 
 
 def diff(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from drivelint.errors import ExitCode
-from drivelint.phrases import plural
+from drivelint.phrases import name_list, plural
 from drivelint.result import counts
 from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
 from drivelint.result.text import ego_name, number
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 MAX_LINES: Final = 50
 """Largest number of findings or reasons per kind on a terminal; JSON has all of them."""
+
+MOST_CHANGED_RULES: Final = 2
+"""Largest number of changed rules that a sentence names; it counts the others."""
 
 DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
@@ -90,7 +93,8 @@ def counts_sentence(n_by_status: Mapping[str, int], n_worse: int, n_fixed: tuple
 
 
 def judged_less_sentence(difference: Difference) -> str:
-    """Return a sentence about what the newer result judged less than the earlier one, or on another map; '' if there is nothing."""
+    """Return a sentence about what the newer result judged less than the earlier one, on another map, or by changed rules; '' if
+    there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
     parts = [f"{plural(n, 'verdict')} unknown that were pass or fail before{more}"] if n else []
@@ -103,6 +107,9 @@ def judged_less_sentence(difference: Difference) -> str:
     told = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
     if difference.other_maps:
         told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
+    if difference.changed_rules:
+        rules = name_list(difference.changed_rules, MOST_CHANGED_RULES)
+        told.append(f"judged by other parameters or another version of a rule than in the baseline: {rules}")
     return "; ".join(told)
 
 
@@ -171,6 +178,7 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
         },
         "fail_on": fail_on,
         "counts": difference.counts(),
+        "events": difference.event_counts(),
         "gating": [entry.finding_id for entry in failing],
         **msgspec.to_builtins(difference),
     }
@@ -178,11 +186,14 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
 
 
 def finding_line(entry: ComparedFinding) -> str:
-    """Return a finding in one line: severity, place, rule, and the verdict of the other result there."""
+    """Return a finding in one line: severity, place, rule, and the verdict of the other result there.
+
+    A finding that is worse has both margins at the end of the line.
+    """
     profile = "" if entry.profile is None else f" [{entry.profile}]"
     who = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
-    margin = "" if entry.margin is None else f", margin {number(entry.margin, entry.unit)}"
+    margin = "" if entry.margin is None or entry.worse else f", margin {number(entry.margin, entry.unit)}"
     head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
     return f"{head}{_other_verdict_phrase(entry)}"
 
@@ -262,11 +273,13 @@ def why_not_gating(result: Result, row: Row, rule: Row | None) -> str:
 
 
 def gate_counts(gate: Gate) -> dict[str, Any]:
-    """Return a gate's counts as data for JSON."""
-    states = Counter(waiver.state for waiver in gate.waivers)
+    """Return a gate's counts as data for JSON. `events`: findings of a baseline, one per event; the other counts are of rows."""
+    states, before = Counter(waiver.state for waiver in gate.waivers), gate.baseline
     return {
         "today": gate.today,
-        "baseline": None if gate.baseline is None else {"name": gate.baseline.base_name} | gate.baseline.counts(),
+        "baseline": None
+        if before is None
+        else {"name": before.base_name, **before.counts(), "events": before.event_counts()},
         "waived_findings": len(gate.waived),
         "confidence": gate.confidence,
         "possible_findings": len(gate.possible),

@@ -74,6 +74,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         n_both=len(base_id_by_new_id),
         other_maps=tuple(sorted(now["drive_id"] for now, was in both if now["map_sha256"] != was["map_sha256"])),
         shorter=tuple(sorted(now["drive_id"] for now, was in both if _is_much_shorter(now, was))),
+        changed_rules=tuple(name for name in sorted(new_lookup.rules) if _is_changed(name, base_lookup, new_lookup)),
     )
 
 
@@ -123,10 +124,14 @@ def _outcome_with_rule_note(
     outcome: VerdictAndReason, finding: TimedFinding, base_lookup: ResultLookup, new_lookup: ResultLookup
 ) -> VerdictAndReason:
     """Return the outcome, with a note added if the rule or its parameters differ between the results."""
-    a, b = (lookup.rules.get(finding.row["rule_id"]) for lookup in (base_lookup, new_lookup))
-    if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
+    if not _is_changed(finding.row["rule_id"], base_lookup, new_lookup):
         return outcome
     return outcome._replace(why=f"{outcome.why} The rule or its parameters changed.")
+
+
+def _is_changed(rule_id: str, base_lookup: ResultLookup, new_lookup: ResultLookup) -> bool:
+    a, b = (lookup.rules.get(rule_id) for lookup in (base_lookup, new_lookup))
+    return a is not None and b is not None and (a["rule_version"], a["params"]) != (b["rule_version"], b["params"])
 
 
 def _matched_finding(now: TimedFinding, was: TimedFinding, new_lookup: ResultLookup) -> ComparedFinding:

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections import Counter
 from dataclasses import replace
 from datetime import date, datetime
 from difflib import get_close_matches
@@ -33,6 +32,7 @@ from drivelint.errors import UsageError
 from drivelint.gate.match import seconds_since_start
 from drivelint.globs import glob_length_problem
 from drivelint.phrases import hint
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.gate import Waiver
 from drivelint.settings import settings_table
 from drivelint.toml_text import parse_toml
@@ -85,15 +85,16 @@ def states_and_matches(
     """Return the waivers with their state on the day `today`, and finding_id -> index of the first waiver that matches
     the finding and has not expired."""
     drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
-    found: Counter[int] = Counter()
-    waived: dict[str, int] = {}
     expired = [date.fromisoformat(waiver.expires) < today for waiver in waivers]
-    for row in result.findings.to_pylist():
-        for number, waiver in enumerate(waivers):
-            if _matches(waiver, row, drives[row["drive_id"]]):
-                found[number] += 1
-                if not expired[number]:
-                    waived.setdefault(row["finding_id"], number)
+    rows = result.findings.to_pylist()
+    waived: dict[str, int] = {}
+    found: list[int] = []
+    for number, waiver in enumerate(waivers):
+        matched = [row for row in rows if _matches(waiver, row, drives[row["drive_id"]])]
+        found.append(len(one_finding_per_event(matched)))
+        if not expired[number]:
+            for row in matched:
+                waived.setdefault(row["finding_id"], number)
     stated = (
         replace(
             waiver,

@@ -32,6 +32,7 @@ _ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK)
 _SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_LISTED_NAMES: Final = 2
+_MAX_LISTED_PARAMETERS: Final = 4
 _REMEDY_BY_SIGNAL: Final = {"ego size": ", which --ego-size gives"}
 _NEVER_MOVES_CODE: Final = "ego_never_moves"
 _NO_MAP_CODE: Final = "missing_map"
@@ -47,17 +48,31 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the notes on the inputs: law (if a rule implements a nation's law), map, log, missing signals, parked egos, not judged."""
+    """Return the notes on the inputs: law (if a rule implements a nation's law), parameters (if some are set), map, log, missing
+    signals, parked egos, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW_LABEL, words, is_warning=False)] if (words := law_words(result)) else []
     return [
         *law,
+        *_notes_on_parameters(result),
         _map_note(drives),
         _log_note(drives),
         *_notes_on_unrecorded_signals(result),
         *_notes_on_parked_egos(result),
         _not_judged_note(result, result.drives.num_rows - len(drives)),
     ]
+
+
+def _notes_on_parameters(result: Result) -> list[InputNote]:
+    """Return a note with the parameters of rules that were set for this run, and their values."""
+    set_here = [
+        f"{rule['rule_id']}.{param['name']} = {param['value']}{' ' + param['unit'] if param['unit'] not in {None, '1'} else ''}"
+        for rule in result.rules.to_pylist()
+        for param in rule["params"]
+        if param["overridden"]
+    ]
+    words = f"set for this run: {name_list(set_here, _MAX_LISTED_PARAMETERS)}"
+    return [InputNote("parameters", words, is_warning=True)] if set_here else []
 
 
 def _map_note(drives: Sequence[Row]) -> InputNote:

@@ -11,6 +11,7 @@ from lxml import etree
 
 from drivelint.gate import descriptions
 from drivelint.reasons.signals import UNRECORDED_PREFIX
+from drivelint.report.outcome import events_by_status
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
@@ -54,11 +55,11 @@ class Case(NamedTuple):
 def render(result: Result) -> bytes:
     """Return the report as UTF-8 XML; failures and errors are consistent with the exit code.
 
-    A failure is a drive, rule and profile with a finding that causes exit code 1. An error is anything that causes exit code 2, 3 or 4:
-    a rule in error, a forbidden unknown verdict or one that lacks a signal of the log, a drive that was not judged, a map that does not
-    fit, or a lossy log. A finding of the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is
-    skipped if it is not applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their
-    system-out.
+    A failure is a drive, rule and profile with a finding that causes exit code 1. A finding under several profiles fails one case, and the
+    cases of the other profiles are skipped and name it. An error is anything that causes exit code 2, 3 or 4: a rule in error, a forbidden
+    unknown verdict or one that lacks a signal of the log, a drive that was not judged, a map that does not fit, or a lossy log. A finding
+    of the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is skipped if it is not applicable,
+    has other unknown verdicts, or has only findings that do not gate. Other cases list these in their system-out.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases_by_drive(result)
@@ -70,7 +71,8 @@ def render(result: Result) -> bytes:
     if too_little := why_too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
     if gone := gating_unfixed_findings(result):
-        suites.append(("baseline", list(map(_unfixed_case, gone))))
+        events = counts.group_rows(gone, lambda entry: entry.event_key)
+        suites.append(("baseline", list(map(_unfixed_case, events.values()))))
     for name, mine in suites:
         counted = _append_suite(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
@@ -89,15 +91,15 @@ def _cases_of_drive_problems(drive: Row) -> Iterator[Case]:
         yield Case("the map fits the drive", "error", "map", [reason])
 
 
-def _unfixed_case(entry: ComparedFinding) -> Case:
-    """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed."""
-    name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
-    return Case(
-        f"{name} of {entry.drive_id}",
-        "error",
-        entry.standing,
-        [f"gone, but not fixed: {descriptions.finding_line(entry)}"],
-    )
+def _unfixed_case(event: Sequence[ComparedFinding]) -> Case:
+    """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed.
+
+    `event`: its entry under each profile.
+    """
+    first = event[0]
+    name = rule_name({"rule_id": first.rule_id, "profile": first.profile})
+    lines = [f"gone, but not fixed: {descriptions.finding_line(entry)}" for entry in event]
+    return Case(f"{name} of {first.drive_id}", "error", first.standing, lines)
 
 
 class _CaseLines(NamedTuple):
@@ -105,6 +107,7 @@ class _CaseLines(NamedTuple):
 
     erred: list[str]
     stopping: list[str]
+    counted_elsewhere: list[str]
     not_gating: list[str]
     unknown: list[str]
     lacking_signal: list[str]
@@ -117,13 +120,18 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     told: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines(*([] for _ in _CaseLines._fields)))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
-    def add_failure(row: Row, text: str) -> None:
+    def add_failure(row: Row, text: str, counted_as: Row | None = None) -> None:
         reason = descriptions.why_not_gating(result, row, rules.get(row["rule_id"]))
         lines = told[_case_key(row)]
         if reason:
             lines.not_gating.append(f"does not gate ({reason}): {text}")
+        elif counted_as is not None:
+            lines.counted_elsewhere.append(f"fails too, counted in {rule_name(counted_as)}: {text}")
         else:
             lines.stopping.append(text)
+
+    def line(row: Row) -> str:
+        return verdict_or_finding_line(row, when(row, rules, starts.get(row["drive_id"])))
 
     starts = result.start_times
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
@@ -132,8 +140,12 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
         kind = "lacking_signal" if row["lacks_signal"] else of_verdict.get(row["verdict"])
         if kind:
             getattr(lines, kind).append(with_count(row["reason"], row["count_all"]))
-    for row in result.findings.to_pylist():
-        add_failure(row, verdict_or_finding_line(row, when(row, rules, starts.get(row["drive_id"]))))
+    for event in events_by_status(result.gate, result.findings.to_pylist()):
+        also = f" ({event.other_rows_words})" if event.other_rows else ""
+        add_failure(event.finding, f"{line(event.finding)}{also}")
+        for row in event.other_rows:
+            if _case_key(row) != _case_key(event.finding):
+                add_failure(row, line(row), event.finding)
     for row in _distinct_reasons(failures_without_finding(result)):
         add_failure(row, with_count(row["reason"], row["count_all"]))
     required = set(_case_keys(gating_unknowns(result)))
@@ -164,14 +176,16 @@ def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
     not_applicable = [f"not applicable: {x}" for x in [*lines.lacking_signal, *lines.not_applicable]]
     if is_required:
         unknown += [f"not recorded: {x}" for x in lines.lacking_signal]
+    others = [*lines.counted_elsewhere, *lines.not_gating]
     if lines.erred:
-        return Case(name, "error", "error", lines.erred, [*lines.stopping, *lines.not_gating, *unknown])
+        return Case(name, "error", "error", lines.erred, [*lines.stopping, *others, *unknown])
     if lines.stopping:
-        return Case(name, "failure", "fail", lines.stopping, [*lines.not_gating, *unknown])
+        return Case(name, "failure", "fail", lines.stopping, [*others, *unknown])
     if unknown and is_required:
-        return Case(name, "error", "unknown", unknown, lines.not_gating)
-    if unknown or lines.not_gating:
-        return Case(name, "skipped", "unknown" if unknown else "does_not_gate", [*unknown, *lines.not_gating])
+        return Case(name, "error", "unknown", unknown, others)
+    if others or unknown:
+        kind = "counted_elsewhere" if lines.counted_elsewhere else "unknown" if unknown else "does_not_gate"
+        return Case(name, "skipped", kind, [*lines.counted_elsewhere, *unknown, *lines.not_gating])
     if lines.passed:
         return Case(name, None, "pass", [])
     return Case(name, "skipped", "not_applicable", not_applicable)

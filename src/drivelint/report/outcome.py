@@ -15,7 +15,8 @@ from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
-from drivelint.result.model import exit_status, gating_findings, is_too_little_decided
+from drivelint.result.model import decision_counts, exit_status, gating_findings, is_too_little_decided
+from drivelint.result.text import number, subject
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,7 +35,7 @@ LABEL_OF_EXIT_CODE: Final = {
 }
 _MOSTLY_UNKNOWN: Final = "MOSTLY UNKNOWN"
 _TOO_LITTLE_JUDGED: Final = "TOO LITTLE JUDGED"
-"""The label of a run that decided most rules, but fewer than `--min-judged` requires."""
+"""The label of a run that exits with 4 because it decided fewer rules than `--min-judged` requires."""
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
 _FINDINGS_LABEL: Final = "FINDINGS"
 _KIND_OF_LABEL: Final = {
@@ -74,6 +75,37 @@ class Headline(NamedTuple):
     def sentence(self) -> str:
         """The sentence, without a full stop."""
         return "; ".join(part.words for part in self.parts)
+
+
+class Event(NamedTuple):
+    """A finding, and the rows of the same event: also under other profiles, or of the other ego of a touch.
+
+    `finding`: the row that reports show. `rows`: all rows of the event in the order of the table, including `finding`.
+    """
+
+    finding: Row
+    rows: tuple[Row, ...]
+
+    @property
+    def id(self) -> str:
+        """The id of the event's first row. Unlike `finding`, that row does not depend on how sure each row is."""
+        return str(self.rows[0]["finding_id"])
+
+    @property
+    def other_rows(self) -> list[Row]:
+        """The rows of the event that reports only mention."""
+        return [row for row in self.rows if row is not self.finding]
+
+    @property
+    def other_rows_words(self) -> str:
+        """The other rows in words, such as "also under the profile observed, margin -3.00 m"; '' if there are none."""
+        return "; ".join(
+            f"also found for {subject(row)}"
+            if row["ego_id"] != self.finding["ego_id"]
+            else f"also under the profile {row['profile']}"
+            + ("" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}")
+            for row in self.other_rows
+        )
 
 
 class _UndecidedRules(NamedTuple):
@@ -140,7 +172,7 @@ def headline(result: Result) -> Headline:
         if doubtful and (result.gate is None or result.gate.confidence is None):
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
             parts.append(HeadlinePart(f"{some}only possible"))
-        if (open_rules := _count_undecided_rules(result)).are_most:
+        if (open_rules := _count_undecided_rules(result)).are_most or label == _TOO_LITTLE_JUDGED:
             parts.append(HeadlinePart(open_rules.headline_words, "warning"))
     if less:
         parts.append(HeadlinePart(less, "warning"))
@@ -154,9 +186,17 @@ def headline(result: Result) -> Headline:
 
 def one_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
     """Return one finding of each event; if the findings of an event differ in standing (new, known), one of each standing."""
+    return [event.finding for event in events_by_status(gate, rows)]
+
+
+def events_by_status(gate: Gate | None, rows: Sequence[Row]) -> list[Event]:
+    """Return the events with the findings of `one_per_event_and_status`, in the order of these findings."""
     of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
-    kept = {id(row) for mine in of_standing.values() for row in counts.one_finding_per_event(mine)}
-    return [row for row in rows if id(row) in kept]
+    members: dict[int, list[Row]] = {}
+    for mine in of_standing.values():
+        for row, place in zip(mine, counts.representative_indices(mine), strict=True):
+            members.setdefault(id(mine[place]), []).append(row)
+    return [Event(row, tuple(members[id(row)])) for row in rows if id(row) in members]
 
 
 def status_at_gate(gate: Gate | None, finding_id: str) -> str:
@@ -188,24 +228,20 @@ def _outcome_label(result: Result, has_findings: bool) -> str:
     code, told = exit_status(result).code, counts.verdict_counts(result.verdicts)
     if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_too_little_decided(result)):
         return LABEL_OF_EXIT_CODE.get(code, "?")
+    if code == ExitCode.NOT_JUDGED and told["pass"] + told["fail"]:
+        return _TOO_LITTLE_JUDGED
     if has_findings:
         return _FINDINGS_LABEL
     if not told["pass"] + told["fail"]:
         lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
-    if _count_undecided_rules(result).are_most:
-        return _MOSTLY_UNKNOWN
-    return LABEL_OF_EXIT_CODE[code] if code == ExitCode.OK else _TOO_LITTLE_JUDGED
+    return _MOSTLY_UNKNOWN if _count_undecided_rules(result).are_most else LABEL_OF_EXIT_CODE[code]
 
 
 def _count_undecided_rules(result: Result) -> _UndecidedRules:
     """Count the undecided rules, and the rules that may apply, per drive and ego."""
-    rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
-    where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
-    said = [{row["verdict"] for row in mine} for mine in where.values()]
-    n_decided = sum(bool(each & {"pass", "fail"}) for each in said)
-    n_open = sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said)
-    return _UndecidedRules(n_open, n_open + n_decided, len({key[:2] for key in where}) > 1)
+    n_decided, n = decision_counts(result.verdicts)
+    return _UndecidedRules(n - n_decided, n, len(counts.distinct_rows(result.verdicts, ["drive_id", "ego_id"])) > 1)
 
 
 def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label: str, *, is_all_judged: bool) -> str:
@@ -222,8 +258,7 @@ def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label:
     if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, because no rule applied: the situations of the rules did not occur"
     if label in {_MOSTLY_UNKNOWN, _TOO_LITTLE_JUDGED}:
-        open_rules = _count_undecided_rules(result)
-        return f"no findings, but {open_rules.headline_words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
+        return f"no findings, but {_count_undecided_rules(result).headline_words}"
     return "no findings" if is_all_judged else "no findings, but not everything could be judged"
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow.compute as pc
 
+from drivelint.errors import UsageError
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
 from drivelint.result.names import (
@@ -22,7 +23,7 @@ from drivelint.result.names import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.result.model import Result
@@ -45,14 +46,17 @@ REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
 
 
 @contextmanager
-def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Path | None]:
+def working_folder(out: Path | None, formats: Sequence[str] = (), *, overwrite: bool = False) -> Iterator[Path | None]:
     """Prepare the folder `out` for a result, and yield a folder in it for files that grow during a run. If `out` is None, yield None.
 
     Reports of an earlier result are removed at once. If the run ends without a result, the earlier result's other files move to
     `earlier/`.
 
-    Errors: `UsageError` if `out` has result files that drivelint did not write, unless `overwrite`; `OutputError`.
+    Errors: `UsageError` if `out` has result files that drivelint did not write, unless `overwrite`, or if it is None although reports
+    of some `formats` are to be written; `OutputError`.
     """
+    if out is None and formats:
+        raise UsageError("--report: needs a folder for the report: name it with --out")
     if out is None:
         yield None
     else:
@@ -61,10 +65,13 @@ def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Pat
             yield work
 
 
-def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> tuple[str, ...]:
+def write(
+    result: Result, out: Path, work: Path | None = None, *, reports: Sequence[str] = (), overwrite: bool = False
+) -> tuple[str, ...]:
     """Write every result file of `check` into the folder `out`, and replace an earlier result.
 
     `work`: the folder that `working_folder` yielded; its files become part of the result. `summary.json` is written last.
+    `reports`: further formats of `REPORT_FORMATS` to write.
     The same tables give the same bytes. Return the names of the files that grew during the run.
     Errors: `OutputError` if the folder cannot be written.
     """
@@ -76,6 +83,9 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     # the page links to files in the folder of this run, not to files of an earlier run
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
     contents[REPORT_FILES["junit"]] = junit.render(result)
+    contents |= {
+        name: render(result) for name, render in (REPORT_FORMATS[each] for each in reports) if name not in contents
+    }
     if result.gate is not None:
         contents[GATE_FILE] = gate.render(result.gate)
     if result.run_options is not None:

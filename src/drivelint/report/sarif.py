@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from drivelint import __version__
 from drivelint.gate import descriptions
-from drivelint.report.outcome import LET_THROUGH_WORDS, status_at_gate
+from drivelint.report.outcome import LET_THROUGH_WORDS, events_by_status, status_at_gate
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt_words
@@ -33,6 +33,8 @@ from drivelint.result.text import (
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from drivelint.report.outcome import Event
+    from drivelint.result.gate import Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
@@ -100,11 +102,12 @@ class _SarifRun:
             "invocations": [invocation],
             **({"originalUriBaseIds": {ROOT_BASE_ID: _ROOT_DESCRIPTION}} if self._paths else {}),
             "artifacts": [_artifact(drive, self._log_uri(drive)) for drive in self._logs],
-            "results": [self._result_of_finding(row) for row in result.findings.to_pylist()],
+            "results": list(map(self._result_of_event, events_by_status(result.gate, result.findings.to_pylist()))),
             "properties": properties,
         }
 
-    def _result_of_finding(self, row: Row) -> dict[str, Any]:
+    def _result_of_event(self, event: Event) -> dict[str, Any]:
+        row = event.finding
         drive, rule_index = self._drives[row["drive_id"]], self._rule_index[row["rule_id"]]
         rule, gate = self._rules[rule_index], self._result.gate
         start_ns = drive["t_start_ns"]
@@ -116,6 +119,7 @@ class _SarifRun:
             measured,
             who,
             f"({doubt_words(row)})" if doubt_words(row) else "",
+            f"({event.other_rows_words})" if event.other_rows else "",
         ]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
@@ -126,7 +130,8 @@ class _SarifRun:
             else _level(row["severity"], rule["status"]),
             "message": {"text": " ".join(part for part in said if part)},
             "locations": [self._location(drive, row)],
-            "partialFingerprints": {"findingId/v1": row["finding_id"]},
+            # code scanning of GitHub only reads primaryLocationLineHash: without it, all findings of a rule in a log are one alert
+            "partialFingerprints": {"findingId/v1": event.id, "primaryLocationLineHash": event.id},
             "properties": {
                 "profile": row["profile"],
                 "severity": row["severity"],
@@ -139,18 +144,11 @@ class _SarifRun:
                 **{name: row[name] for name in ("n_copies", "n_stays")},
                 "certainty": certainty(row),
                 "gates": row["finding_id"] in self._gating,
+                "findingIds": [each["finding_id"] for each in event.rows],
+                "profiles": sorted({each["profile"] for each in event.rows} - {None}),
             },
         }
-        if gate is not None:
-            entry, waiver = gate.compared_finding(row["finding_id"]), gate.waiver(row["finding_id"])
-            if gate.baseline is not None:
-                found["baselineState"] = _BASELINE_STATES[entry.standing] if entry else "new"
-            if waiver is not None:
-                justification = f"{waiver.reason} ({waiver.owner}, until {waiver.expires})"
-                found["suppressions"] = [{"kind": "external", "status": "accepted", "justification": justification}]
-            elif gate.waivers:
-                found["suppressions"] = []  # SARIF: if some results are suppressed, the others have an empty list
-        return found
+        return found if gate is None else found | _gate_properties(gate, event)
 
     def _log_uri(self, drive: Row) -> dict[str, str]:
         """Return the URI of a log: its path relative to the folder of the check, or its name if that path is not known."""
@@ -201,6 +199,26 @@ class _SarifRun:
                 yield _notification("data-quality", level, text, self._location(drive))
         for text in descriptions.waiver_warnings(result.gate) if result.gate else ():
             yield _notification("waiver", "warning", text)
+
+
+def _gate_properties(gate: Gate, event: Event) -> dict[str, Any]:
+    """Return what the baseline and the waivers say about an event, as properties of a SARIF result."""
+    found: dict[str, Any] = {}
+    ids = [row["finding_id"] for row in event.rows]
+    if gate.baseline is not None:
+        entries = filter(None, map(gate.compared_finding, ids))
+        states = {_BASELINE_STATES[entry.standing] for entry in entries} or {"new"}
+        found["baselineState"] = next(state for state in ("new", "updated", "unchanged") if state in states)
+    if gate.waivers:  # SARIF: if some results are suppressed, the others have an empty list
+        found["suppressions"] = [
+            {
+                "kind": "external",
+                "status": "accepted",
+                "justification": f"{waiver.reason} ({waiver.owner}, until {waiver.expires})",
+            }
+            for waiver in dict.fromkeys(filter(None, map(gate.waiver, ids)))
+        ]
+    return found
 
 
 def _relative_log_paths(result: Result) -> Mapping[str, str]:

@@ -10,15 +10,19 @@ import duckdb
 
 from drivelint import __version__
 from drivelint.gate import descriptions
+from drivelint.report.outcome import one_per_event_and_status
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.schemas import OUTPUT_VERSION
 from drivelint.result.text import replace_non_finite
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import pyarrow as pa
 
     from drivelint.result.model import Result
+    from drivelint.result.text import Row
 
 _RULE_COLUMNS: Final = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
 _DRIVE_COLUMNS: Final = [
@@ -39,6 +43,7 @@ def content(result: Result) -> dict[str, Any]:
     """Return the summary as plain data; counts of verdicts include kinds that did not occur, with 0."""
     end = exit_status(result)
     near = result.verdicts.filter(result.verdicts["near_miss"])
+    events = one_per_event_and_status(result.gate, result.findings.to_pylist())
     return {
         "output_schema": OUTPUT_VERSION,
         "tool": {"name": "drivelint", "version": __version__, "duckdb": duckdb.__version__},
@@ -53,26 +58,34 @@ def content(result: Result) -> dict[str, Any]:
         "verdicts": counts.verdict_counts(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
+        "events": {name: sum(row["severity"] == name for row in events) for name in counts.SEVERITIES},
         "packs": [
             {"pack": pack, "verdicts": told}
             for pack, told in counts.verdict_counts_by_pack(result.rules, result.verdicts).items()
         ],
-        "rules": _rows_with_counts(result, result.rules.select(_RULE_COLUMNS), near),
-        "drives": _rows_with_counts(result, result.drives.select(_DRIVE_COLUMNS), near),
+        "rules": _rows_with_counts(result, result.rules.select(_RULE_COLUMNS), near, events),
+        "drives": _rows_with_counts(result, result.drives.select(_DRIVE_COLUMNS), near, events),
     }
 
 
-def _rows_with_counts(result: Result, rows: pa.Table, near_misses_table: pa.Table) -> list[dict[str, Any]]:
-    """Return the rows with the numbers of their verdicts, near misses and findings; the first column is the id."""
+def _rows_with_counts(
+    result: Result, rows: pa.Table, near_misses_table: pa.Table, events: Sequence[Row]
+) -> list[dict[str, Any]]:
+    """Return the rows with the numbers of their verdicts, near misses, findings and events; the first column is the id.
+
+    A finding under two profiles is two rows of the table of findings, but one event.
+    """
     key = rows.column_names[0]
     verdicts = counts.verdict_counts_by(result.verdicts, key)
     near_misses, findings = (Counter(table[key].to_pylist()) for table in (near_misses_table, result.findings))
+    n_events = Counter(row[key] for row in events)
     return [
         {
             **row,
             "verdicts": verdicts[row[key]],
             "near_misses": near_misses[row[key]],
             "findings": findings[row[key]],
+            "events": n_events[row[key]],
         }
         for row in rows.to_pylist()
     ]

@@ -37,12 +37,14 @@ if TYPE_CHECKING:
 
     from rich.console import JustifyMethod, RenderableType
 
+    from drivelint.result.gate import Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
 MOST_DRIVES: Final = 8
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
+MOST_WORSE: Final = 3
 
 STYLE_OF_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT_SEVERITIES: Final = {"critical": "crit", "major": "maj", "minor": "min"}
@@ -338,6 +340,21 @@ def _input_lines(result: Result) -> list[Text]:
     ]
 
 
+def _lines_on_worse_findings(gate: Gate) -> list[Text]:
+    """Return a line for each known finding that is worse than in the baseline, the most severe first."""
+    entries = gate.baseline.entries if gate.baseline is not None else ()
+    worse = [entry for entry in entries if entry.worse and gate.status_at_gate(entry.finding_id) == "known"]
+    events = counts.group_rows(worse, lambda entry: entry.event_key)
+    first = sorted((rows[0] for rows in events.values()), key=lambda entry: counts.SEVERITIES.index(entry.severity))
+    lines = [Text(f"worse    {descriptions.finding_line(entry)}", "yellow") for entry in first[:MOST_WORSE]]
+    more = len(first) - MOST_WORSE
+    return (
+        [*lines, Text(f"... {plural(more, 'more known finding')} worse than in the baseline", "dim")]
+        if more > 0
+        else lines
+    )
+
+
 def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     end = exit_status(result)
     style = _STYLE_OF_LABEL.get(LABEL_OF_EXIT_CODE.get(end.code, ""), _STYLE_OF_OTHER_LABELS)
@@ -346,7 +363,7 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
         changes = descriptions.earlier_findings_sentence(gate.baseline)
-        lines.append(Text(f"baseline: {changes}"))
+        lines += [Text(f"baseline: {changes}"), *_lines_on_worse_findings(gate)]
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.verdict_counts(result.verdicts)["unknown"] or counts.verdicts_lacking_signal(result.verdicts).num_rows:

@@ -15,6 +15,7 @@ from lxml import etree
 
 from drivelint import __version__
 from drivelint.gate import descriptions
+from drivelint.report.outcome import events_by_status
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
@@ -23,6 +24,7 @@ from drivelint.result.text import subject, verdict_or_finding_line, with_count
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from drivelint.report.outcome import Event
     from drivelint.result.gate import Gate
     from drivelint.result.model import Result
     from drivelint.result.text import Row
@@ -97,8 +99,8 @@ def _write_checker(
     )
     for param in rule["params"]:
         add_element(checker, "Param", name=param["name"], value=f"{param['value']} {param['unit'] or ''}".rstrip())
-    for row in findings:
-        _write_finding(checker, row, rule, drive["t_start_ns"], gate)
+    for event in events_by_status(gate, findings):
+        _write_event(checker, event, rule, drive["t_start_ns"], gate)
     for row in verdict_rows if status != "skipped" else ():
         if row["verdict"] in {"unknown", "error"}:
             text = f"{row['verdict']}, neither kept nor broken: {with_count(row['reason'], row['count_all'])}"
@@ -111,13 +113,15 @@ def _write_checker(
     return verdict_counts
 
 
-def _write_finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None, gate: Gate | None) -> None:
+def _write_event(checker: etree._Element, event: Event, rule: Row, start_ns: int | None, gate: Gate | None) -> None:
+    row = event.finding
     waiver = gate.waiver(row["finding_id"]) if gate else None
     stable = rule["status"] == "stable"
     profile = "" if row["profile"] is None else f"profile {row['profile']}: "
     moment = when(row, {rule["rule_id"]: rule}, start_ns)
     text = profile + verdict_or_finding_line(row, moment)
-    notes = [] if stable else [f"{rule['status']}, does not gate"]
+    also = [event.other_rows_words] if event.other_rows else []
+    notes = also + ([] if stable else [f"{rule['status']}, does not gate"])
     notes += [descriptions.waiver_reason_phrase(waiver)] if waiver else []
     notes += ["known: the baseline contains it"] if gate and gate.is_in_baseline(row["finding_id"]) else []
     level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION_LEVEL
@@ -128,8 +132,9 @@ def _write_finding(checker: etree._Element, row: Row, rule: Row, start_ns: int |
         add_element(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")
     add_element(place, "TimeLocation", time=repr(row["t_worst_ns"] / 1e9))
     names = ("finding_id", "profile", "ego_id", "object_id", "observed", "required", "margin", "unit", "lanelet_id")
-    facts = {name: str(row[name]) for name in names if row[name] is not None}
-    add_element(add_element(issue, "DomainSpecificInfo", name="drivelint"), "Finding", **facts)
+    told = add_element(issue, "DomainSpecificInfo", name="drivelint")
+    for each in (row, *event.other_rows):
+        add_element(told, "Finding", **{name: str(each[name]) for name in names if each[name] is not None})
 
 
 def _add_issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._Element:

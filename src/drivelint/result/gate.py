@@ -64,6 +64,11 @@ class ComparedFinding:
         """The id of the finding that represents this one's event."""
         return self.event or self.finding_id
 
+    @property
+    def event_key(self) -> tuple[str, str]:
+        """The drive and the id of the event: findings of two logs with the same content have the same ids."""
+        return self.drive_id, self.event_id
+
 
 @dataclass(frozen=True)
 class NewUnknowns:
@@ -81,7 +86,7 @@ class NewUnknowns:
 
 def n_findings(entries: Iterable[ComparedFinding]) -> int:
     """Return the number of findings, counting one per event."""
-    return len({entry.event_id for entry in entries})
+    return len({entry.event_key for entry in entries})
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -110,6 +115,8 @@ class Difference(msgspec.Struct, frozen=True):
     """Drives of NEW that BASE judged on another map, or without one."""
     shorter: tuple[str, ...] = ()
     """Drives of NEW that are shorter than nine tenths of their duration in BASE."""
+    changed_rules: tuple[str, ...] = ()
+    """Rules that have another version or other parameters in NEW than in BASE."""
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
@@ -118,8 +125,8 @@ class Difference(msgspec.Struct, frozen=True):
 
     def event_counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, one per event; an event with a changed and an unchanged finding is changed."""
-        changed = {entry.event_id for entry in self.with_diff_status("changed")}
-        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.event_id not in changed]
+        changed = {entry.event_key for entry in self.with_diff_status("changed")}
+        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.event_key not in changed]
         found = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
         return found | {"unchanged": n_findings(as_before)}
 

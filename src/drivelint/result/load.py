@@ -81,8 +81,10 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        with path.open("rb") as file:  # opened by Python, since receipts record the files that Python opens
-            return without_geometry(pq.read_table(file, page_checksum_verification=True))
+        # Read by Python, since receipts record the files that Python opens. Arrow gets the bytes, not the file: one of its threads may
+        # still hold a file of Python when the interpreter ends, which then aborts.
+        content = pa.BufferReader(path.read_bytes())
+        return without_geometry(pq.read_table(content, page_checksum_verification=True))
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: {_file_problem_words(error)}: check the drives again") from error
 

@@ -13,7 +13,13 @@ from drivelint.drive.trace import EGO_ABSENT_CHECK
 from drivelint.errors import ExitCode
 from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX, signal_name
-from drivelint.result.counts import SEVERITIES, group_rows, one_finding_per_event, verdicts_lacking_signal
+from drivelint.result.counts import (
+    SEVERITIES,
+    distinct_rows,
+    group_rows,
+    one_finding_per_event,
+    verdicts_lacking_signal,
+)
 from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
 from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.schemas import conform, empty_table
@@ -246,18 +252,25 @@ def why_too_little_decided(result: Result) -> str | None:
 
 
 def decided_share(verdicts: pa.Table) -> float | None:
-    """Return the share of decided rules among the rules that may apply; None if no rule may apply.
+    """Return the share of decided rules among the rules that may apply, see `decision_counts`; None if no rule may apply."""
+    n_decided, n = decision_counts(verdicts)
+    return n_decided / n if n else None
 
-    Each rule is counted per drive and ego. It is decided if any of its verdicts for this drive and ego is pass or fail.
+
+def decision_counts(verdicts: pa.Table) -> tuple[int, int]:
+    """Return how many rules are decided, and how many may apply; each rule is counted per drive and ego.
+
+    A rule is decided if any of its verdicts for this drive and ego is pass or fail. It may apply if any is not "not applicable", or if the
+    log lacks a signal that it needs.
     """
-    kinds = verdicts["verdict"].to_pylist()
-    lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX).to_pylist()
-    keys = zip(*(verdicts[name].to_pylist() for name in ("drive_id", "ego_id", "rule_id")), strict=True)
+    lacks = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX)
+    rows = verdicts.select(["drive_id", "ego_id", "rule_id", "verdict"]).append_column("lacks", lacks)
     is_decided: dict[tuple[str, str, str], bool] = {}
-    for key, kind, lacks in zip(keys, kinds, lacking, strict=True):
-        if kind != "not_applicable" or lacks:
-            is_decided[key] = is_decided.get(key, False) or kind in {"pass", "fail"}
-    return sum(is_decided.values()) / len(is_decided) if is_decided else None
+    for row in distinct_rows(rows, rows.column_names):
+        key = row["drive_id"], row["ego_id"], row["rule_id"]
+        if row["verdict"] != "not_applicable" or row["lacks"]:
+            is_decided[key] = is_decided.get(key, False) or row["verdict"] in {"pass", "fail"}
+    return sum(is_decided.values()), len(is_decided)
 
 
 def is_too_little_decided(result: Result) -> bool:
