@@ -339,3 +339,31 @@ def test_the_worst_of_a_drive_of_several_egos_names_its_ego() -> None:
     found = [finding(ego_id="394")]
     assert any(re.search(r"^d1 .* s ego 394 ", line) for line in summary(result(rows, found, drives=[drive(n_egos=2)])))
     assert not any("ego 394" in line for line in summary(result(rows[:1], found, drives=[drive()])))
+
+
+@pytest.mark.parametrize("width", [80, 100, 120])
+def test_what_happened_and_what_to_do_is_whole(width: int) -> None:
+    contact = finding(
+        drive_id="d2", rule_id="ukhc.no-collision", observed=-0.1, required=0.0, closing_mps=22.35, object_id="0a-1b"
+    )
+    long = rule(breach="Too little clear road ahead to overtake another vehicle before the oncoming one is there")
+    reason = "The log does not show the ego back in its lane after it overtook the vehicle: record it until it is."
+    rows = [verdict("fail"), verdict("fail", drive_id="d2"), verdict("unknown", reason_code="log_end", reason=reason)]
+    lost = drive("d3", status="not_judged", status_reason="d3.csv: no column 'length', which mapping 'table' needs")
+    run = result(rows, [finding(), contact], drives=[drive(), drive("d2"), lost], rules=[long, COLLISION])
+    lines = summary(run, width)
+    text = "\n".join(lines)
+    assert "…" not in text
+    told = " ".join(text.split())
+    assert "CONTACT object 0a-1b; closing at 22.35 m/s" in told
+    assert f"unknown (1 rule): {reason}" in told
+    for sentence in (long["breach"], lost["status_reason"]):
+        assert set(sentence.split()) <= set(told.replace(";", "").split())
+
+
+def test_a_command_that_a_narrow_terminal_breaks_can_be_copied() -> None:
+    name = "d" * 60
+    lines = summary(result([verdict("fail", drive_id=name)], [finding(drive_id=name)], drives=[drive(name)]), 120)
+    (at,) = [n for n, line in enumerate(lines) if line.startswith("explain  ")]
+    assert lines[at].endswith(f"ukhc.r162.safe-distance-ahead@{name} \\")
+    assert lines[at + 1].strip() == "--in out"

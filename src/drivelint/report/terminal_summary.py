@@ -43,6 +43,11 @@ if TYPE_CHECKING:
 MOST_DRIVES: Final = 8
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
+_COUNT_COLUMNS_WIDTH: Final = 29
+"""The width of the drives table's columns with counts."""
+_COLUMN_GAP: Final = 5
+_LEAST_FINDING_WIDTH: Final = 44
+"""In a narrower column, a finding would need more than two lines: it is put below the drive's name instead."""
 
 STYLE_OF_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT_SEVERITIES: Final = {"critical": "crit", "major": "maj", "minor": "min"}
@@ -75,7 +80,10 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     if found:
         parts += [_broken_rules_table(found, _let_through_words(result, every)), Text()]
     return Group(
-        *parts, *_lines_on_rules_and_inputs(result), Text(), *_exit_and_next_steps_lines(result, found or every, out)
+        *parts,
+        *_lines_on_rules_and_inputs(result),
+        Text(),
+        *_exit_and_next_steps_lines(result, found or every, out, width),
     )
 
 
@@ -123,11 +131,15 @@ def _outcome_text(result: Result) -> Text:
 
 
 def _empty_table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
-    """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers."""
+    """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers.
+
+    Text wraps, so that no end is lost; numbers and their headings do not.
+    """
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
     for name in names:
-        justify: JustifyMethod = "left" if name in max_widths else "right"
-        table.add_column(name, justify=justify, no_wrap=True, overflow="ellipsis", max_width=max_widths.get(name))
+        is_text = name in max_widths
+        justify: JustifyMethod = "left" if is_text else "right"
+        table.add_column(name, justify=justify, no_wrap=not is_text, overflow="fold", max_width=max_widths.get(name))
     return table
 
 
@@ -153,33 +165,41 @@ def _drives_table(
     drives = sorted(result.drives.to_pylist(), key=sort_key)
     names = [drive["drive_id"] + (" (lossy)" if drive["lossy"] else "") for drive in drives[:MOST_DRIVES]]
     longest = min(max(map(len, names)), width // 3)
-    table = _empty_table(
-        ("drive", "worst", *_SHORT_SEVERITIES.values(), "unknown"), {"drive": longest, "worst": width - longest - 34}
+    beside = width - longest - _COLUMN_GAP - _COUNT_COLUMNS_WIDTH
+    is_beside = beside >= _LEAST_FINDING_WIDTH
+    widths = (
+        {"drive": longest, "worst": beside} if is_beside else {"drive, its worst below": width - _COUNT_COLUMNS_WIDTH}
     )
+    table = _empty_table((*widths, *_SHORT_SEVERITIES.values(), "unknown"), widths)
+
+    def add_row(name: Text, worst: RenderableType, cells: Iterable[Text] = ()) -> None:
+        table.add_row(*((name, worst) if is_beside else (Group(name, worst),)), *cells)
+
     for drive, shown in zip(drives, names, strict=False):
         name = drive["drive_id"]
         mine = of_drive.get(name, [])
         if drive["status"] != "judged":
-            table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
+            add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
+        worst: RenderableType
         if mine:
-            worst = _finding_text(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
+            worst = _finding_cell(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
-            worst = _let_through_text(
+            worst = _let_through_cell(
                 result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1
             )
         else:
-            worst = _no_finding_text(drive, unknown[name], lacks_signals=name in lacking)
+            worst = _no_finding_cell(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_count_cell(k, STYLE_OF_SEVERITY[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         n_unknown = unknown[name]["unknown"] + unrecorded[name]
-        table.add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _count_cell(n_unknown, "yellow"))
+        add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, [*cells, _count_cell(n_unknown, "yellow")])
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
 
 
-def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
+def _no_finding_cell(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
     if off_map_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
     if verdicts["pass"]:
@@ -188,26 +208,24 @@ def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: 
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
-def _let_through_text(
+def _let_through_cell(
     result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
-) -> Text:
+) -> Table:
     """Return a finding that a gate lets through, and the reason."""
     how = status_at_gate(result.gate, row["finding_id"])
-    text = _finding_text(row, rules, start_ns, several_egos=several_egos)
     # the text of a possible finding contains that word already
-    return (
-        text
-        if how == "possible" and doubt_words(row)
-        else Text.assemble((f"{LET_THROUGH_WORDS[how]}: ", "yellow"), text)
-    )
+    why = "" if how == "possible" and doubt_words(row) else f"{LET_THROUGH_WORDS[how]}: "
+    return _finding_cell(row, rules, start_ns, several_egos=several_egos, let_through_because=why)
 
 
 def _count_cell(n: int, style: str) -> Text:
     return Text(str(n), style) if n else Text("·", "dim")
 
 
-def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
-    """Return time, measured value and rule of a finding, numbers first, because a narrow column cuts off the end.
+def _finding_cell(
+    row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool, let_through_because: str = ""
+) -> Table:
+    """Return time, measured value and rule of a finding; in a narrow column, the words wrap beside the time.
 
     For a contact, return the other actor and the closing speed just before the contact instead of the rule.
     """
@@ -230,11 +248,17 @@ def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, seve
     if later := worst_time_words(row, rules, start_ns):
         parts.append(later)
     ego = f"{ego_name(row['ego_id'])} " if several_egos else ""
-    when = f"{seconds(moment_ns(row, rules), start_ns):>8} {ego}"
     what = "possible contact " if doubt_words(row) else "CONTACT "
     if doubt_words(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
-    return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
+    cell = Table.grid(padding=(0, 1, 0, 0))
+    cell.add_column(no_wrap=True)
+    cell.add_column(overflow="fold")
+    cell.add_row(
+        Text.assemble((let_through_because, "yellow"), f"{seconds(moment_ns(row, rules), start_ns):>8}"),
+        Text.assemble(ego, (what if contact else "", "bold red"), "; ".join(parts)),
+    )
+    return cell
 
 
 def _let_through_words(result: Result, every: list[Row]) -> str:
@@ -306,7 +330,7 @@ def _unknown_reason_lines(result: Result) -> list[Text]:
     for _, group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
         words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
-        lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
+        lines.append(Text(words, "yellow"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
@@ -321,7 +345,7 @@ def _input_lines(result: Result) -> list[Text]:
     ]
 
 
-def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None) -> list[Text]:
+def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None, width: int) -> list[Text]:
     end = exit_status(result)
     style = _STYLE_OF_LABEL.get(LABEL_OF_EXIT_CODE.get(end.code, ""), _STYLE_OF_OTHER_LABELS)
     gate = result.gate
@@ -344,5 +368,8 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
         name = (
             name if terminal_safe_line(name) == name else worst["finding_id"]
         )  # the printed command must work in a shell
-        lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
+        command = [f"explain  drivelint explain {shlex.quote(name)}", f"--in {out}"]
+        is_too_long = len(" ".join(command)) > width
+        # a shell joins the lines again when a person copies them
+        lines.append(Text((" \\\n" + " " * len("explain  ") if is_too_long else " ").join(command)))
     return lines
