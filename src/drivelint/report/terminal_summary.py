@@ -164,7 +164,7 @@ def _drives_table(
 
     drives = sorted(result.drives.to_pylist(), key=sort_key)
     names = [drive["drive_id"] + (" (lossy)" if drive["lossy"] else "") for drive in drives[:MOST_DRIVES]]
-    longest = min(max(map(len, names)), width // 3)
+    longest = min(max(map(len, [*names, "drive"])), width // 3)
     beside = width - longest - _COLUMN_GAP - _COUNT_COLUMNS_WIDTH
     is_beside = beside >= _LEAST_FINDING_WIDTH
     widths = (
