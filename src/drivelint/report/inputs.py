@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 LAW_LABEL: Final = "law"
 """The label of the note on the law, which the terminal prints in its first line instead."""
 _ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK)
+_PLACED_CHECKS: Final = ("dropped_row", "malformed_row", "malformed_cell", "clock_jump")
+"""The checks of a log's rows: their messages contain the place in the file."""
 _SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_LISTED_NAMES: Final = 2
@@ -116,9 +118,20 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
-        parts.append(f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)})")
+        parts.append(
+            f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)}){_first_place_words(warned)}"
+        )
     parts += (copied := _words_on_copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
+
+
+def _first_place_words(warned: AbstractSet[tuple[str, str]]) -> str:
+    """Return the message of the gravest warning about rows of a file, and where the other warnings are; '' for none."""
+    placed = sorted(((_PLACED_CHECKS.index(check), text) for check, text in warned if check in _PLACED_CHECKS))
+    if not placed:
+        return ""
+    more = "; drivelint inspect shows the others" if len(warned) > 1 else ""
+    return f": {placed[0][1]}{more}"
 
 
 def _completeness_words(drives: Sequence[Row]) -> str:
