@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
 _INVISIBLE = re.compile(
     r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f"
@@ -63,6 +64,21 @@ def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) 
     words = {each.casefold(): each for each in known_words}
     near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
     return words[near[0]] if near else None
+
+
+def path_hint(path: Path) -> str:
+    """Return "did you mean 'x'?" for a missing path, if a file or folder beside its first missing part has a similar name; else ''."""
+    try:
+        missing = next((part for part in (*reversed(path.parents), path) if not part.exists()), path)
+        beside = sorted(each.name for each in missing.parent.iterdir())
+    except (OSError, ValueError):  # a name may be too long, or the folder unreadable
+        return ""
+    near = nearest_word(missing.name, beside)
+    if near is None:
+        return ""
+    meant = missing.with_name(near)
+    below = meant / path.relative_to(missing)
+    return f"did you mean {escape_invisible(str(below if below.exists() else meant))!r}?"
 
 
 def name_list(names: Sequence[str], max_names: int = 5) -> str:

@@ -205,6 +205,26 @@ def test_an_existing_name_is_taken_literally(tmp_path: Path, name: str) -> None:
     assert names(expand_traces([str(tmp_path / name)])) == [name]
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("logs/colision.mcap", "did you mean 'logs/collision.mcap'?"),
+        ("lgos/collision.mcap", "did you mean 'logs/collision.mcap'?"),
+        ("lgos/elsewhere.csv", "did you mean 'logs'?"),
+        ("logs/other.csv", "check the path"),
+    ],
+)
+def test_a_misspelled_path_is_met_with_the_near_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "collision.mcap").write_bytes(b"x")
+    with pytest.raises(TraceError) as error:
+        expand_traces([text])
+    assert str(error.value) == f"{text}: no such file or folder: {words}"
+
+
 def test_a_canonical_folder_is_one_drive(tmp_path: Path) -> None:
     drive = tmp_path / "all" / "drive"
     drive.mkdir(parents=True)
