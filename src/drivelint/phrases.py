@@ -21,6 +21,9 @@ _UNSAFE_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
 _LINE_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
 _IRREGULAR_PLURALS: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
 
+_EGO_ID: Final = re.compile(r"ego(?![^\W_])|ego\d", re.IGNORECASE)
+"""The beginning of an id that is the word "ego", alone or before a number or a separator."""
+
 
 def escape_invisible(text: str) -> str:
     """Return a text, which may come from a log, with its invisible characters replaced by their codes, such as `\\x1b`."""
@@ -90,3 +93,8 @@ def name_list(names: Sequence[str], max_names: int = 5) -> str:
 def plural(n: int, noun: str) -> str:
     """Return a count with its noun, such as "2 logs"."""
     return f"{n} {noun if n == 1 else _IRREGULAR_PLURALS.get(noun, f'{noun}s')}"
+
+
+def ego_name(ego_id: str) -> str:
+    """Return an ego's name, such as "ego 7"; the id alone if it says "ego" itself, such as "Ego" or "ego_vehicle"."""
+    return ego_id if _EGO_ID.match(ego_id) else f"ego {ego_id}"
