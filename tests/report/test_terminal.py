@@ -367,3 +367,18 @@ def test_a_command_that_a_narrow_terminal_breaks_can_be_copied() -> None:
     (at,) = [n for n, line in enumerate(lines) if line.startswith("explain  ")]
     assert lines[at].endswith(f"ukhc.r162.safe-distance-ahead@{name} \\")
     assert lines[at + 1].strip() == "--in out"
+
+
+def test_one_cause_of_several_rules_is_one_line() -> None:
+    cause = "the log does not show the ego back in its lane: record it until it is"
+    rows = [
+        verdict("unknown", rule_id="ukhc.a", reason_code="no_time", reason=f"{cause[0].upper()}{cause[1:]}."),
+        verdict("unknown", rule_id="ukhc.b", reason_code="no_anchor", reason=cause),
+        verdict("unknown", rule_id="ukhc.c", reason_code="null_value", reason=f"the gap is not known: {cause}"),
+        verdict("unknown", rule_id="ukhc.d", reason_code="log_hole", reason="a hole at 3 s"),
+        verdict("error", rule_id="ukhc.e", reason_code="no_time", reason=cause),
+    ]
+    lines = summary(result([*rows, verdict("pass")], rules=[rule(f"ukhc.{name}") for name in "abcde"] + [rule()]))
+    told = [line for line in lines if line.startswith(("unknown", "error"))]
+    assert len(told) == 3
+    assert told[0] == f"unknown (3 rules, 3 times): {cause}"

@@ -324,16 +324,29 @@ def _unknown_reason_lines(result: Result) -> list[Text]:
     def n_rules(verdicts: list[Row]) -> int:
         return len({row["rule_id"] for row in verdicts})
 
-    groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
-    order = sorted(groups.items(), key=lambda group: (-n_rules(group[1]), -len(group[1]), group[0]))
+    groups = _groups_by_cause(others)
+    order = sorted(groups, key=lambda group: (-n_rules(group), -len(group), group[0]["reason_code"]))
     lines = []
-    for _, group in order[:MOST_REASONS]:
+    for group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
         words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
         lines.append(Text(words, "yellow"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
+
+
+def _groups_by_cause(rows: list[Row]) -> list[list[Row]]:
+    """Return the verdicts grouped by their reason, the shortest text first; a reason that ends with another's text joins its group."""
+    by_code = counts.group_rows(rows, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for group in sorted(by_code.values(), key=lambda group: len(group[0]["reason"])):
+        verdict, text = group[0]["verdict"], group[0]["reason"].rstrip(".").casefold()
+        same = next(
+            (key for key in groups if key[0] == verdict and f": {text}".endswith(f": {key[1]}")), (verdict, text)
+        )
+        groups.setdefault(same, []).extend(group)
+    return list(groups.values())
 
 
 def _input_lines(result: Result) -> list[Text]:
