@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
@@ -79,12 +80,21 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
     if found:
         parts += [_broken_rules_table(found, _let_through_words(result, every)), Text()]
-    return Group(
-        *parts,
-        *_lines_on_rules_and_inputs(result),
-        Text(),
-        *_exit_and_next_steps_lines(result, found or every, out, width),
-    )
+    end = _exit_and_next_steps_lines(result, found or every, out, width)
+    lines = [*_lines_on_rules_and_inputs(result), Text(), *end]
+    return Group(*parts, *_lines_with_each_misfit_once(result, _outcome_text(result).plain, lines))
+
+
+def _lines_with_each_misfit_once(result: Result, printed: str, lines: list[Text]) -> list[Text]:
+    """Return the lines; the reason why a map does not fit is left out where `printed` or an earlier line contains it."""
+    reasons = sorted({off_map_reason(drive) or "" for drive in result.drives.to_pylist()} - {""})
+    for n, line in enumerate(lines):
+        for reason in reasons:
+            place = re.search(rf" \({re.escape(reason)}\)|: {re.escape(reason)}", line.plain)
+            if place and reason in printed:
+                lines[n] = line[: place.start()] + line[place.end() :]
+        printed += line.plain
+    return lines
 
 
 def _extent_line(result: Result) -> Text:
