@@ -85,15 +85,15 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     return Group(*parts, *_lines_with_each_misfit_once(result, _outcome_text(result).plain, lines))
 
 
-def _lines_with_each_misfit_once(result: Result, printed: str, lines: list[Text]) -> list[Text]:
-    """Return the lines; the reason why a map does not fit is left out where `printed` or an earlier line contains it."""
+def _lines_with_each_misfit_once(result: Result, text_above: str, lines: list[Text]) -> list[Text]:
+    """Return the lines; the reason why a map does not fit is left out where `text_above` or an earlier line contains it."""
     reasons = sorted({off_map_reason(drive) or "" for drive in result.drives.to_pylist()} - {""})
     for n, line in enumerate(lines):
         for reason in reasons:
             place = re.search(rf" \({re.escape(reason)}\)|: {re.escape(reason)}", line.plain)
-            if place and reason in printed:
+            if place and reason in text_above:
                 lines[n] = line[: place.start()] + line[place.end() :]
-        printed += line.plain
+        text_above += line.plain
     return lines
 
 
