@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
 _INVISIBLE = re.compile(
     r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f"
@@ -19,6 +20,9 @@ _BUILD_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
 _UNSAFE_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
 _LINE_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
 _IRREGULAR_PLURALS: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
+
+_EGO_ID: Final = re.compile(r"ego(?![^\W_])|ego\d", re.IGNORECASE)
+"""The beginning of an id that is the word "ego", alone or before a number or a separator."""
 
 
 def escape_invisible(text: str) -> str:
@@ -65,6 +69,21 @@ def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) 
     return words[near[0]] if near else None
 
 
+def path_hint(path: Path) -> str:
+    """Return "did you mean 'x'?" for a missing path, if a file or folder beside its first missing part has a similar name; else ''."""
+    try:
+        missing = next((part for part in (*reversed(path.parents), path) if not part.exists()), path)
+        beside = sorted(each.name for each in missing.parent.iterdir())
+    except (OSError, ValueError):  # a name may be too long, or the folder unreadable
+        return ""
+    near = nearest_word(missing.name, beside)
+    if near is None:
+        return ""
+    meant = missing.with_name(near)
+    below = meant / path.relative_to(missing)
+    return f"did you mean {escape_invisible(str(below if below.exists() else meant))!r}?"
+
+
 def name_list(names: Sequence[str], max_names: int = 5) -> str:
     """Return the first names as a text, and how many more there are."""
     more = len(names) - max_names
@@ -74,3 +93,8 @@ def name_list(names: Sequence[str], max_names: int = 5) -> str:
 def plural(n: int, noun: str) -> str:
     """Return a count with its noun, such as "2 logs"."""
     return f"{n} {noun if n == 1 else _IRREGULAR_PLURALS.get(noun, f'{noun}s')}"
+
+
+def ego_name(ego_id: str) -> str:
+    """Return an ego's name, such as "ego 7"; the id alone if it says "ego" itself, such as "Ego" or "ego_vehicle"."""
+    return ego_id if _EGO_ID.match(ego_id) else f"ego {ego_id}"

@@ -252,7 +252,7 @@ def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
     code, drive, rows = checked(path, ego_size="4.5,1.8")
     assert (code, drive["lossy"]) == (3, True)
     assert absence(drive) == [
-        "the ego ego is absent for 3.0 of 6.0 s (50 %), from 1.990 s to 5.000 s: what it did in that time is unknown"
+        "the ego is absent for 3.0 of 6.0 s (50 %), from 1.990 s to 5.000 s: what it did in that time is unknown"
     ]
     assert len([row for row in rows if row["verdict"] == "unknown"]) <= 6
     trembling = [message for k, message in enumerate(messages) if k % 40]  # single samples lack

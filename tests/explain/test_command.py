@@ -55,6 +55,17 @@ def test_json_is_for_programs(folder: Path, monkeypatch: pytest.MonkeyPatch, cap
     assert json.loads(out)["sensitivity"] is None
 
 
+@pytest.mark.ci
+def test_the_title_of_a_fail_is_the_breach(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    _, failed, _ = ran(monkeypatch, capfd, "no-collision@collision", "--in", str(folder), "--samples", "0")
+    assert failed.splitlines()[0] == "ukhc.no-collision: Collision"
+    assert "\n  No collision.\n" in failed.partition("What the rule requires")[2]
+    _, kept, _ = ran(monkeypatch, capfd, "no-collision@safe", "--in", str(folder), "--samples", "0")
+    assert kept.splitlines()[0] == "ukhc.no-collision: No collision"
+
+
 def test_a_mistake_is_one_line(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -205,6 +205,26 @@ def test_an_existing_name_is_taken_literally(tmp_path: Path, name: str) -> None:
     assert names(expand_traces([str(tmp_path / name)])) == [name]
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("logs/colision.mcap", "did you mean 'logs/collision.mcap'?"),
+        ("lgos/collision.mcap", "did you mean 'logs/collision.mcap'?"),
+        ("lgos/elsewhere.csv", "did you mean 'logs'?"),
+        ("logs/other.csv", "check the path"),
+    ],
+)
+def test_a_misspelled_path_is_met_with_the_near_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "collision.mcap").write_bytes(b"x")
+    with pytest.raises(TraceError) as error:
+        expand_traces([text])
+    assert str(error.value) == f"{text}: no such file or folder: {words}"
+
+
 def test_a_canonical_folder_is_one_drive(tmp_path: Path) -> None:
     drive = tmp_path / "all" / "drive"
     drive.mkdir(parents=True)
@@ -256,7 +276,7 @@ def test_a_drive_is_called_by_stem_and_content(tmp_path: Path) -> None:
     ("name", "content", "message"),
     [
         ("a.mcap", b"", r"the file is empty \(0 bytes\)"),
-        ("a.mcap", b"<!DOCTYPE html><html>not found", r"not mcap: .*begins b'<!DOCTYPE html>.*at byte 0"),
+        ("a.mcap", b"<!DOCTYPE html><html>not found", r"not mcap: .*begins b'<!DOCTYP.*at byte 0"),
         ("a.parquet", b"PAR2....", "not parquet"),
         ("a.parquet", b"PAR1 and nothing", "not readable as Parquet"),
         ("a.osi", b"\x10\0\0\0", "not an OSI trace"),

@@ -98,10 +98,10 @@ RULES = [rule(), rule("m", severity="minor")]
         (DECIDED, ""),
         ([*DECIDED, verdict("unknown", object_id="6")], ""),  # nothing was decided of it
         ([verdict("not_applicable"), *DECIDED[1:]], ""),
-        ([verdict("unknown"), *DECIDED[1:]], "1 verdict unknown that were pass or fail before (1 critical)"),
+        ([verdict("unknown"), *DECIDED[1:]], "1 verdict unknown that was pass or fail before (1 critical)"),
         ([verdict("unknown"), verdict("error", object_id="4"), DECIDED[2], verdict("unknown", rule_id="m")],
          "3 verdicts unknown that were pass or fail before (2 critical)"),
-        ([*DECIDED[:3], verdict("unknown", rule_id="m")], "1 verdict unknown that were pass or fail before"),
+        ([*DECIDED[:3], verdict("unknown", rule_id="m")], "1 verdict unknown that was pass or fail before"),
     ],
 )  # fmt: skip
 def test_what_is_judged_less_is_said(now: list[dict[str, Any]], said: str) -> None:

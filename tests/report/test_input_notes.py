@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
 from drivelint.report.inputs import input_notes
-from tests.report.synthetic import result, verdict
+from tests.report.synthetic import drive, result, verdict
 
 PARKED = {"reason_code": "ego_never_moves"}
 
@@ -36,3 +38,19 @@ def test_an_unknown_size_of_the_ego_names_the_option_that_gives_it() -> None:
     (words,) = (note.words for note in input_notes(result(rows, [])) if note.label == "not judged")
     assert "1 rule without ego size, which --ego-size gives" in words
     assert words.count("--") == 1
+
+
+def test_a_malformed_cell_is_told_with_its_line_and_column() -> None:
+    cell = {
+        "check_id": "malformed_cell", "severity": "warning", "actor_id": None, "n": 1, "t_first_ns": None,
+        "message": "a.csv, line 8: column 'v' is not a number: those values are unknown",
+    }  # fmt: skip
+    other = cell | {"check_id": "teleport", "message": "b jumps"}
+
+    def words(*quality: Mapping[str, object]) -> str:
+        notes = input_notes(result([verdict("pass")], [], drives=[drive(quality=list(quality))]))
+        return next(note.words for note in notes if note.label == "log")
+
+    assert words(cell).endswith(f"1 warning (malformed cell): {cell['message']}")
+    assert words(cell, other).endswith(f"{cell['message']}; drivelint inspect shows the others")
+    assert words(other).endswith("1 warning (teleport)")

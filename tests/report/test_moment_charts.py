@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from jinja2 import Environment, PackageLoader
 
 from drivelint.report.html.moment_charts import LEFT, RIGHT, ChartLine, _chart_of_quantity, charts_below_plan_view
 from drivelint.report.html.svg import Axis
@@ -24,11 +25,13 @@ def test_numbers_go_below_a_title_that_leaves_no_room(title: str, who: str, *, a
     lines = [ChartLine("met", who, t, [1.0, 2.0, 3.0, 4.0]), ChartLine("ego", "ego 1", t, [4.0, 3.0, 2.0, 1.0])]
     drawn = _chart_of_quantity(0, title, "m", lines, t[2], x=Axis(t[0], t[-1], LEFT, RIGHT), course=None)
     assert drawn["at_worst"] == f"ego 1 2.00, {who} 3.00"
-    top, height = float(drawn["top"]), float(drawn["height"])
+    top = float(drawn["top"])
     if apart:
         assert drawn["value_y"] == drawn["label_y"]
     else:
-        assert top + 8 < float(drawn["value_y"]) < top + height, "in the frame of the strip"
+        assert float(drawn["label_y"]) + 12 < float(drawn["value_y"]) < top, (
+            "on a line of its own above the strip's lines"
+        )
 
 
 def test_a_cut_takes_room_too() -> None:
@@ -40,6 +43,24 @@ def test_a_cut_takes_room_too() -> None:
     drawn = _chart_of_quantity(0, "overlap of the danger spaces of both", "m", lines, t[30], x=x, course=course)
     assert drawn["cut"]
     assert drawn["value_y"] != drawn["label_y"]
+
+
+def test_no_line_lies_over_the_words() -> None:
+    environment = Environment(loader=PackageLoader("drivelint.report.html"), autoescape=True)
+    environment.filters["measure"] = str
+    ends = [("limit", 900.0), ("ego", -900.0)]
+    t = [n * SECOND for n in range(60)]
+    lines = [ChartLine(kind, "a long name of a line", t, [end, *([1.0] * 59)]) for kind, end in ends]
+    x = Axis(t[0], t[-1], LEFT, RIGHT)
+    course = {"t_ns": t, "required": [0.5] * 60, "holds": [True] * 60}
+    upper = _chart_of_quantity(0, "overlap of the danger spaces of both", "m", lines, t[30], x=x, course=course)
+    lower = _chart_of_quantity(float(upper["bottom"]), "speed", "m", lines, t[30], x=x, course=None)
+    assert float(upper["bottom"]) + 8 < float(lower["label_y"])
+    strips = {"height": "200", "bottom": "180", "strips": [upper, lower], "t_ticks": [], "at": "300"}
+    macros: Any = environment.get_template("macros.html.j2").module
+    drawn = macros.strips(strips)
+    last_line = max(drawn.index("moment-line"), drawn.rindex("strip-line"), drawn.rindex('class="grid"'))
+    assert min(drawn.index("strip-name"), drawn.index("strip-value")) > last_line
 
 
 def test_nothing_has_no_sign_but_of_a_measure_that_may_break_a_rule() -> None:

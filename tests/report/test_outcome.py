@@ -239,7 +239,7 @@ def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_repor
     now = [crash(drive_id="d2") | {"margin": -0.5}]
     head = (
         "findings no new finding; 1 known (1 critical) in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); "
-        "judged less than the baseline: 1 verdict unknown that were pass or fail before (1 critical), "
+        "judged less than the baseline: 1 verdict unknown that was pass or fail before (1 critical), "
         "1 drive of the baseline not checked, 1 rule of the baseline not selected"
     )
     less = run(now, verdict("unknown"), drives=[drive(), drive("d2")], rules=[rule(), CONTACT])

@@ -214,9 +214,8 @@ def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
     )
     assert any(re.match("off +no finding, but the map does not fit ", line) for line in lines)
     assert any(line.startswith("map: road.xodr fits 1 of 2 drives") for line in lines)
-    assert any(
-        line.startswith("exit 4: the map does not fit 1 of 2 drives: on a lane in only 27 of 181") for line in lines
-    )
+    assert any(line.startswith("exit 4: the map does not fit 1 of 2 drives (no baseline)") for line in lines)
+    assert " ".join(" ".join(lines).split()).count("on a lane in only 27 of 181 steps") == 1, "a reason is said once"
     second = [*ego, ego[0] | {"ego_id": "2"}]
     assert exit_status(result([verdict("pass")], drives=[drive(exposure=second, not_judged=lost)])).code == ExitCode.OK
     other = drive(exposure=ego, not_judged=[lost[0] | {"reason_code": "ego_without_position"}])
@@ -347,9 +346,9 @@ def test_parameters_that_were_set_are_named() -> None:
         {"name": "time_s", "value": "2.0", "unit": "s", "overridden": False},
     ]
     text = shown(result([verdict("pass")], rules=[rule(params=given)]), verbose=False)
-    assert f"set for this run (--param): {rule()['rule_id']}.gap_m=3.0\n" in re.sub(r" +\n", "\n", text)
+    assert f"set for this run: {rule()['rule_id']}.gap_m = 3.0 m\n" in re.sub(r" +\n", "\n", text)
     assert "time_s" not in text
-    assert "--param" not in shown(result([verdict("pass")]), verbose=False)
+    assert "set for this run" not in shown(result([verdict("pass")]), verbose=False)
 
 
 def test_without_findings_the_command_explains_an_unknown_verdict() -> None:
@@ -367,3 +366,46 @@ def test_findings_of_draft_rules_are_counted_beside_the_exit_code() -> None:
     assert exit_status(run) == (
         ExitCode.OK, "nothing failed at or above severity critical; 2 findings of rules that are not stable do not count"
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [80, 100, 120])
+def test_what_happened_and_what_to_do_is_whole(width: int) -> None:
+    contact = finding(
+        drive_id="d2", rule_id="ukhc.no-collision", observed=-0.1, required=0.0, closing_mps=22.35, object_id="0a-1b"
+    )
+    long = rule(breach="Too little clear road ahead to overtake another vehicle before the oncoming one is there")
+    reason = "The log does not show the ego back in its lane after it overtook the vehicle: record it until it is."
+    rows = [verdict("fail"), verdict("fail", drive_id="d2"), verdict("unknown", reason_code="log_end", reason=reason)]
+    lost = drive("d3", status="not_judged", status_reason="d3.csv: no column 'length', which mapping 'table' needs")
+    run = result(rows, [finding(), contact], drives=[drive(), drive("d2"), lost], rules=[long, COLLISION])
+    lines = summary(run, width)
+    text = "\n".join(lines)
+    assert "…" not in text
+    told = " ".join(text.split())
+    assert "CONTACT object 0a-1b; closing at 22.35 m/s" in told
+    assert f"unknown (1 rule): {reason}" in told
+    for sentence in (long["breach"], lost["status_reason"]):
+        assert set(sentence.split()) <= set(told.replace(";", "").split())
+
+
+def test_a_command_that_a_narrow_terminal_breaks_can_be_copied() -> None:
+    name = "d" * 60
+    lines = summary(result([verdict("fail", drive_id=name)], [finding(drive_id=name)], drives=[drive(name)]), 120)
+    (at,) = [n for n, line in enumerate(lines) if line.startswith("explain  ")]
+    assert lines[at].endswith(f"ukhc.r162.safe-distance-ahead@{name} \\")
+    assert lines[at + 1].strip() == "--in out"
+
+
+def test_one_cause_of_several_rules_is_one_line() -> None:
+    cause = "the log does not show the ego back in its lane: record it until it is"
+    rows = [
+        verdict("unknown", rule_id="ukhc.a", reason_code="no_time", reason=f"{cause[0].upper()}{cause[1:]}."),
+        verdict("unknown", rule_id="ukhc.b", reason_code="no_anchor", reason=cause),
+        verdict("unknown", rule_id="ukhc.c", reason_code="null_value", reason=f"the gap is not known: {cause}"),
+        verdict("unknown", rule_id="ukhc.d", reason_code="log_hole", reason="a hole at 3 s"),
+        verdict("error", rule_id="ukhc.e", reason_code="no_time", reason=cause),
+    ]
+    lines = summary(result([*rows, verdict("pass")], rules=[rule(f"ukhc.{name}") for name in "abcde"] + [rule()]))
+    told = [line for line in lines if line.startswith(("unknown", "error"))]
+    assert len(told) == 3
+    assert told[0] == f"unknown (3 rules, 3 times): {cause}"

@@ -18,6 +18,7 @@ from drivelint.drive.ego import ALL_EGOS, asks_for_all_egos
 from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.drive.order import MAX_GAP_PERIODS, UNKNOWN_CODE, sorted_states
 from drivelint.drive.trace import EGO_ABSENT_CHECK, QualityFinding, States
+from drivelint.phrases import ego_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -208,7 +209,7 @@ def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[Qu
         whole = f"{of_ns / 1e9:.1f} s{' of its track' if absence.of_track else ''}"
         percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
         message = (
-            f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: "
+            f"the {ego_name(absence.ego_id)} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: "
             "what it did in that time is unknown"
         )
         mine = (
@@ -237,5 +238,5 @@ def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[Qu
         return [QualityFinding(ALL_EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]
     t_ns, (first, last) = _times_with_position(states, ego_option), _log_span_ns(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
-    message = f"the ego {ego_option} is chosen with --ego: it is judged for the time of its track, {there}"
+    message = f"the {ego_name(ego_option)} is chosen with --ego: it is judged for the time of its track, {there}"
     return [QualityFinding(EGO_CHOSEN_CHECK, "info", message, actor_id=ego_option)]

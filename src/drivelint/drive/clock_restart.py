@@ -12,6 +12,8 @@ from drivelint.drive.order import UNKNOWN_CODE, repetition_mask_and_index_withou
 from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from drivelint.arrays import Indices, Mask, Times
 
 LEAST_STATES_OF_CLOCK_RUN: Final = 10
@@ -34,6 +36,15 @@ def backward_step_findings(t_ns: Times, topic: str | None = None) -> list[Qualit
         f"backward steps of the clock{of_topic}: {n}, the first to {first_s:g} s: states are sorted by their times"
     )
     return [QualityFinding("clock_jump", "warning", message, n, first)]
+
+
+def rows_back_in_time(t_ns: Times, actor: NDArray[np.int32]) -> Indices:
+    """Return, ascending, the rows whose time is before that of the previous row of the same actor (rows in the order of the file)."""
+    if np.all(t_ns[1:] >= t_ns[:-1]):
+        return np.zeros(0, np.int64)
+    by_actor = np.argsort(actor, kind="stable")
+    is_back = (np.diff(t_ns[by_actor]) < 0) & (np.diff(actor[by_actor]) == 0)
+    return np.sort(by_actor[1:][is_back])
 
 
 def without_values_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:

@@ -46,7 +46,8 @@ if TYPE_CHECKING:
 __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter", "explain"]
 
 _RULE_COLUMNS: Final = (
-    "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
+    "title", "breach", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes",
+    "near_margin",
 )  # fmt: skip
 _DRIVE_COLUMNS: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
 

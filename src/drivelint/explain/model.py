@@ -78,7 +78,7 @@ class Explanation:
     """The explanation of one verdict; numbers are those of the deciding step."""
 
     rule: Row
-    """rule_id, title, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""
+    """rule_id, title, breach, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""
     drive: Row
     """drive_id, file_name, t_start_ns."""
     verdict: Row

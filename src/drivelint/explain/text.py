@@ -17,7 +17,7 @@ from drivelint.explain.plot import plot_lines
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
 from drivelint.reasons.signals import UNRECORDED_PREFIX, remedy, unknown_condition_column
-from drivelint.result.text import ego_name, replace_non_finite, seconds
+from drivelint.result.text import breach_title, ego_name, replace_non_finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store
 
@@ -102,8 +102,9 @@ def _title_and_verdict(explanation: Explanation, width: int) -> list[RenderableT
     if "finding_id" in row:
         who.append(f"finding {row['finding_id']}")
     word = row["verdict"].replace("_", " ").upper()
+    title = breach_title(rule) if row["verdict"] == "fail" else rule["title"]
     return [
-        Text(f"{rule['rule_id']}: {one_line(rule['title'])}", "bold"),
+        Text(f"{rule['rule_id']}: {one_line(title)}", "bold"),
         Text.assemble((word, _STYLE_BY_VERDICT.get(row["verdict"], "bold")), f": {_meaning_of_verdict(row)}"),
         *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
     ]

@@ -15,7 +15,7 @@ from drivelint.drivelint_files import DrivelintFiles
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.search import folder_tree, is_pipe_or_device, why_unreadable
-from drivelint.phrases import escape_invisible
+from drivelint.phrases import escape_invisible, path_hint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,8 +66,9 @@ def _traces_of_name(text: str) -> list[Path]:
         raise UsageError(f"{text}: URIs are not supported: copy the log to this machine and give the path of the file")
     matches = [Path(match) for match in sorted(glob(text, recursive=True))]  # noqa: PTH207 (Path.glob refuses absolute patterns)
     if not matches:
-        what = "no file matches this pattern" if re.search(r"[*?\[]", text) else "no such file or folder"
-        raise TraceError(f"{text}: {what}: check the path")
+        if re.search(r"[*?\[]", text):
+            raise TraceError(f"{text}: no file matches this pattern: check the path")
+        raise TraceError(f"{text}: no such file or folder: {path_hint(path) or 'check the path'}")
     return [file for match in matches for file in _traces_in_path(match)]
 
 

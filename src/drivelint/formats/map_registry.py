@@ -13,7 +13,7 @@ from drivelint.formats.files import is_utf8
 from drivelint.formats.limits import read_within_limits
 from drivelint.formats.probe import wrapping_and_remedy
 from drivelint.formats.search import is_pipe_or_device
-from drivelint.phrases import escape_invisible
+from drivelint.phrases import escape_invisible, path_hint
 from drivelint.road.ground import BYTES_PER_SQUARE, SQUARE_SIDE_M, approximate_square_count
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 from drivelint.road.tree_parts import CrowdedPlaceError
@@ -54,7 +54,9 @@ def read_source(path: Path) -> MapSource:
             raise MapError(f"map {path}: a pipe or a device: write its output to a file, and give that file")
         content = path.read_bytes() if size <= MAX_MAP_BYTES else b""
     except FileNotFoundError:
-        raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
+        raise MapError(
+            f"map {path} does not exist: {path_hint(path) or 'give the path of an OpenDRIVE file with --map'}"
+        ) from None
     except OSError as error:
         raise MapError(
             f"map {path} cannot be read ({error.strerror or error}): give a readable OpenDRIVE file with --map"

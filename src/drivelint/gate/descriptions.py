@@ -97,7 +97,9 @@ def judged_less_sentence(difference: Difference) -> str:
     there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
-    parts = [f"{plural(n, 'verdict')} unknown that were pass or fail before{more}"] if n else []
+    parts = (
+        [f"{plural(n, 'verdict')} unknown that {'was' if n == 1 else 'were'} pass or fail before{more}"] if n else []
+    )
     for noun, names, done in (
         ("drive", difference.base_only, "checked"),
         ("rule", difference.rules_not_run, "selected"),

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 LAW_LABEL: Final = "law"
 """The label of the note on the law, which the terminal prints in its first line instead."""
 _ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK)
+_PLACED_CHECKS: Final = ("dropped_row", "malformed_row", "malformed_cell", "clock_jump")
+"""The checks of a log's rows: their messages contain the place in the file."""
 _SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_LISTED_NAMES: Final = 2
@@ -136,9 +138,20 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
-        parts.append(f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)})")
+        parts.append(
+            f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)}){_first_place_words(warned)}"
+        )
     parts += (copied := _words_on_copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
+
+
+def _first_place_words(warned: AbstractSet[tuple[str, str]]) -> str:
+    """Return the message of the gravest warning about rows of a file, and where the other warnings are; '' for none."""
+    placed = sorted(((_PLACED_CHECKS.index(check), text) for check, text in warned if check in _PLACED_CHECKS))
+    if not placed:
+        return ""
+    more = "; drivelint inspect shows the others" if len(warned) > 1 else ""
+    return f": {placed[0][1]}{more}"
 
 
 def _completeness_words(drives: Sequence[Row]) -> str:
@@ -179,9 +192,9 @@ def _notes_on_parked_egos(result: Result) -> list[InputNote]:
 def _lacking_signals(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
     """Return the signals that verdicts lack, the signal that most rules need first: name, number of rules, and for which egos."""
     missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
-    order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
+    order = sorted(missing.items(), key=lambda item: (-n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO_COLUMNS)}
-    return [(name, _n_rules(verdicts), _for_egos_words(verdicts, egos)) for name, verdicts in order]
+    return [(name, n_rules(verdicts), _for_egos_words(verdicts, egos)) for name, verdicts in order]
 
 
 def _not_judged_note(result: Result, n_drives: int) -> InputNote:
@@ -217,5 +230,25 @@ def n_rules_without_map(result: Result) -> int:
     return len(pc.unique(undecided.filter(pc.equal(undecided["reason_code"], _NO_MAP_CODE))["rule_id"]))
 
 
-def _n_rules(rows: Iterable[Row]) -> int:
-    return len({row["rule_id"] for row in rows})
+def undecided_verdicts_by_cause(result: Result) -> list[list[Row]]:
+    """Return the undecided verdicts, except those of missing signals, in a group per cause; the most frequent cause first.
+
+    A group begins with its shortest reason; a verdict whose reason ends with another's reason joins its group.
+    """
+    columns = ["verdict", "reason_code", "cause_code", "rule_id", "drive_id", "reason"]
+    rows = counts.undecided_verdicts(result.verdicts).select(columns).to_pylist()
+    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
+    by_code = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for group in sorted(by_code.values(), key=lambda group: len(group[0]["reason"])):
+        verdict, text = group[0]["verdict"], group[0]["reason"].rstrip(".").casefold()
+        same = next(
+            (key for key in groups if key[0] == verdict and f": {text}".endswith(f": {key[1]}")), (verdict, text)
+        )
+        groups.setdefault(same, []).extend(group)
+    return sorted(groups.values(), key=lambda group: (-n_rules(group), -len(group), group[0]["reason_code"]))
+
+
+def n_rules(verdicts: Iterable[Row]) -> int:
+    """Return the number of rules of these verdicts."""
+    return len({row["rule_id"] for row in verdicts})

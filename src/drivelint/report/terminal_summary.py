@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
@@ -15,8 +16,8 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import name_list, plural, terminal_safe_line
-from drivelint.report.inputs import LAW_LABEL, input_notes
+from drivelint.phrases import plural, terminal_safe_line
+from drivelint.report.inputs import LAW_LABEL, input_notes, n_rules, undecided_verdicts_by_cause
 from drivelint.report.law import law_words
 from drivelint.report.outcome import (
     LABEL_OF_EXIT_CODE,
@@ -45,6 +46,11 @@ MOST_DRIVES: Final = 8
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 MOST_WORSE: Final = 3
+_COUNT_COLUMNS_WIDTH: Final = 29
+"""The width of the drives table's columns with counts."""
+_COLUMN_GAP: Final = 5
+_LEAST_FINDING_WIDTH: Final = 44
+"""In a narrower column, a finding would need more than two lines: it is put below the drive's name instead."""
 
 STYLE_OF_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT_SEVERITIES: Final = {"critical": "crit", "major": "maj", "minor": "min"}
@@ -76,9 +82,21 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
     if found:
         parts += [_broken_rules_table(found, _let_through_words(result, every)), Text()]
-    return Group(
-        *parts, *_lines_on_rules_and_inputs(result), Text(), *_exit_and_next_steps_lines(result, found or every, out)
-    )
+    end = _exit_and_next_steps_lines(result, found or every, out, width)
+    lines = [*_lines_on_rules_and_inputs(result), Text(), *end]
+    return Group(*parts, *_lines_with_each_misfit_once(result, _outcome_text(result).plain, lines))
+
+
+def _lines_with_each_misfit_once(result: Result, text_above: str, lines: list[Text]) -> list[Text]:
+    """Return the lines; the reason why a map does not fit is left out where `text_above` or an earlier line contains it."""
+    reasons = sorted({map_misfit_reason(drive) or "" for drive in result.drives.to_pylist()} - {""})
+    for n, line in enumerate(lines):
+        for reason in reasons:
+            place = re.search(rf" \({re.escape(reason)}\)|: {re.escape(reason)}", line.plain)
+            if place and reason in text_above:
+                lines[n] = line[: place.start()] + line[place.end() :]
+        text_above += line.plain
+    return lines
 
 
 def _extent_line(result: Result) -> Text:
@@ -125,11 +143,15 @@ def _outcome_text(result: Result) -> Text:
 
 
 def _empty_table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
-    """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers."""
+    """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers.
+
+    Text wraps, so that no end is lost; numbers and their headings do not.
+    """
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
     for name in names:
-        justify: JustifyMethod = "left" if name in max_widths else "right"
-        table.add_column(name, justify=justify, no_wrap=True, overflow="ellipsis", max_width=max_widths.get(name))
+        is_text = name in max_widths
+        justify: JustifyMethod = "left" if is_text else "right"
+        table.add_column(name, justify=justify, no_wrap=not is_text, overflow="fold", max_width=max_widths.get(name))
     return table
 
 
@@ -154,34 +176,42 @@ def _drives_table(
 
     drives = sorted(result.drives.to_pylist(), key=sort_key)
     names = [drive["drive_id"] + (" (lossy)" if drive["lossy"] else "") for drive in drives[:MOST_DRIVES]]
-    longest = min(max(map(len, names)), width // 3)
-    table = _empty_table(
-        ("drive", "worst", *_SHORT_SEVERITIES.values(), "unknown"), {"drive": longest, "worst": width - longest - 34}
+    longest = min(max(map(len, [*names, "drive"])), width // 3)
+    beside = width - longest - _COLUMN_GAP - _COUNT_COLUMNS_WIDTH
+    is_beside = beside >= _LEAST_FINDING_WIDTH
+    widths = (
+        {"drive": longest, "worst": beside} if is_beside else {"drive, its worst below": width - _COUNT_COLUMNS_WIDTH}
     )
+    table = _empty_table((*widths, *_SHORT_SEVERITIES.values(), "unknown"), widths)
+
+    def add_row(name: Text, worst: RenderableType, cells: Iterable[Text] = ()) -> None:
+        table.add_row(*((name, worst) if is_beside else (Group(name, worst),)), *cells)
+
     for drive, shown in zip(drives, names, strict=False):
         name = drive["drive_id"]
         mine = of_drive.get(name, [])
         if drive["status"] != "judged":
-            table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
+            add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
+        worst: RenderableType
         if mine:
-            worst = _finding_text(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
+            worst = _finding_cell(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
-            worst = _let_through_text(
+            worst = _let_through_cell(
                 result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1
             )
         else:
-            worst = _no_finding_text(drive, unknown[name], lacks_signals=name in lacking)
+            worst = _no_finding_cell(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_count_cell(k, STYLE_OF_SEVERITY[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         n_unknown = unknown[name]["unknown"] + unrecorded[name]
-        table.add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _count_cell(n_unknown, "yellow"))
+        add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, [*cells, _count_cell(n_unknown, "yellow")])
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
 
 
-def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
+def _no_finding_cell(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
     if map_misfit_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
     if verdicts["pass"]:
@@ -190,26 +220,24 @@ def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: 
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
-def _let_through_text(
+def _let_through_cell(
     result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
-) -> Text:
+) -> Table:
     """Return a finding that a gate lets through, and the reason."""
     how = status_at_gate(result.gate, row["finding_id"])
-    text = _finding_text(row, rules, start_ns, several_egos=several_egos)
     # the text of a possible finding contains that word already
-    return (
-        text
-        if how == "possible" and doubt_words(row)
-        else Text.assemble((f"{LET_THROUGH_WORDS[how]}: ", "yellow"), text)
-    )
+    why = "" if how == "possible" and doubt_words(row) else f"{LET_THROUGH_WORDS[how]}: "
+    return _finding_cell(row, rules, start_ns, several_egos=several_egos, let_through_because=why)
 
 
 def _count_cell(n: int, style: str) -> Text:
     return Text(str(n), style) if n else Text("·", "dim")
 
 
-def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
-    """Return time, measured value and rule of a finding, numbers first, because a narrow column cuts off the end.
+def _finding_cell(
+    row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool, let_through_because: str = ""
+) -> Table:
+    """Return time, measured value and rule of a finding; in a narrow column, the words wrap beside the time.
 
     For a contact, return the other actor and the closing speed just before the contact instead of the rule.
     """
@@ -232,11 +260,17 @@ def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, seve
     if later := worst_time_words(row, rules, start_ns):
         parts.append(later)
     ego = f"{ego_name(row['ego_id'])} " if several_egos else ""
-    when = f"{seconds(moment_ns(row, rules), start_ns):>8} {ego}"
     what = "possible contact " if doubt_words(row) else "CONTACT "
     if doubt_words(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
-    return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
+    cell = Table.grid(padding=(0, 1, 0, 0))
+    cell.add_column(no_wrap=True)
+    cell.add_column(overflow="fold")
+    cell.add_row(
+        Text.assemble((let_through_because, "yellow"), f"{seconds(moment_ns(row, rules), start_ns):>8}"),
+        Text.assemble(ego, (what if contact else "", "bold red"), "; ".join(parts)),
+    )
+    return cell
 
 
 def _let_through_words(result: Result, every: list[Row]) -> str:
@@ -280,20 +314,7 @@ def _lines_on_rules_and_inputs(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [
-        Text(first), *_parameter_lines(result), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)
-    ]  # fmt: skip
-
-
-def _parameter_lines(result: Result) -> list[Text]:
-    """Return a line with the parameters that the user set."""
-    found = [
-        f"{rule['rule_id']}.{param['name']}={param['value']}"
-        for rule in result.rules.to_pylist()
-        for param in rule["params"]
-        if param["overridden"]
-    ]
-    return [Text(f"set for this run (--param): {name_list(found)}")] if found else []
+    return [Text(first), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)]
 
 
 def _profile_lines(result: Result) -> list[Text]:
@@ -305,30 +326,15 @@ def _profile_lines(result: Result) -> list[Text]:
 
 def _unknown_reason_lines(result: Result) -> list[Text]:
     """Return the reasons of unknown verdicts other than missing signals, the most frequent first."""
-    order = _undecided_verdicts_by_reason(result)
+    order = undecided_verdicts_by_cause(result)
     lines = []
     for group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
-        words = f"{group[0]['verdict']} ({plural(_n_rules(group), 'rule')}{times}): {group[0]['reason']}"
-        lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
+        words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
+        lines.append(Text(words, "yellow"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
-
-
-def _undecided_verdicts_by_reason(result: Result) -> list[list[Row]]:
-    """Return the undecided verdicts, except those of missing signals, in a group per reason; the most frequent reason first."""
-    columns = ["verdict", "reason_code", "cause_code", "rule_id", "drive_id", "reason"]
-    rows = counts.undecided_verdicts(result.verdicts).select(columns).to_pylist()
-    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
-    groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
-    return [
-        rows for _, rows in sorted(groups.items(), key=lambda group: (-_n_rules(group[1]), -len(group[1]), group[0]))
-    ]
-
-
-def _n_rules(verdicts: list[Row]) -> int:
-    return len({row["rule_id"] for row in verdicts})
 
 
 def _input_lines(result: Result) -> list[Text]:
@@ -355,7 +361,7 @@ def _lines_on_worse_findings(gate: Gate) -> list[Text]:
     )
 
 
-def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None) -> list[Text]:
+def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None, width: int) -> list[Text]:
     end = exit_status(result)
     style = _STYLE_OF_LABEL.get(LABEL_OF_EXIT_CODE.get(end.code, ""), _STYLE_OF_OTHER_LABELS)
     gate = result.gate
@@ -372,12 +378,15 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))
         return lines
     lines.append(Text(f"open     {out}/report.html"))
-    unknown = [row for rows in _undecided_verdicts_by_reason(result) for row in rows if row["verdict"] == "unknown"]
+    unknown = [row for rows in undecided_verdicts_by_cause(result) for row in rows if row["verdict"] == "unknown"]
     if told := findings or unknown:
         name = f"{told[0]['rule_id']}@{told[0]['drive_id']}"
         is_safe = terminal_safe_line(name) == name  # the printed command must work in a shell
         if findings and not is_safe:
             name = findings[0]["finding_id"]
         if findings or is_safe:
-            lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
+            command = [f"explain  drivelint explain {shlex.quote(name)}", f"--in {out}"]
+            is_too_long = len(" ".join(command)) > width
+            # a shell joins the lines again when a person copies them
+            lines.append(Text((" \\\n" + " " * len("explain  ") if is_too_long else " ").join(command)))
     return lines

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.phrases import path_hint
 from drivelint.result import gate as gates
 from drivelint.result.folder import changed_files, folder_of_killed_run
 from drivelint.result.geometry import without_geometry
@@ -64,8 +65,10 @@ def _summary(folder: Path) -> dict[str, Any]:
     try:
         found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
+        meant = "" if folder.exists() else path_hint(folder)
         raise UsageError(
-            f"{folder}: no result of drivelint check: summary.json {_file_problem_words(error)}: name the folder that check --out wrote"
+            f"{folder}: no result of drivelint check: summary.json {_file_problem_words(error)}: "
+            f"{meant or 'name the folder that check --out wrote'}"
         ) from error
     if isinstance(found, dict) and "digest" in found and (folder / "audit.json").is_file():
         raise UsageError(

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
+from drivelint import phrases
 from drivelint.result.certainty import doubt_words
 
 NO_VALUE: Final = "-"
@@ -72,8 +73,8 @@ def rule_name(row: Row) -> str:
 
 
 def ego_name(ego_id: str) -> str:
-    """Return an ego's name, such as "ego 7"; "ego" alone if its id is "ego"."""
-    return ego_id if ego_id == "ego" else f"ego {ego_id}"
+    """Return an ego's name, such as "ego 7"; the id alone if it says "ego" itself, such as "Ego" or "ego_vehicle"."""
+    return phrases.ego_name(ego_id)
 
 
 def brief_id(actor_id: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -17,6 +18,8 @@ from tests.formats.logs import LONG, actors, at, cars, log, mapping, put, qualit
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from drivelint.drive.trace import Trace
 
 WIDE = """
 description = "wide table of the tests"
@@ -348,8 +351,41 @@ def test_row_order_does_not_matter(tmp_path: Path, data: st.DataObject) -> None:
     shuffled = [lines[0], *data.draw(st.permutations(lines[1:]))]
     name = mapping(tmp_path)
     expected, found = (read(table(tmp_path / "d.csv", rows), mapping=name) for rows in (lines, shuffled))
-    for kind in ("actor", "actor_state", "quality"):
+    for kind in ("actor", "actor_state"):
         assert expected.tables[kind].drop_columns("drive_id") == found.tables[kind].drop_columns("drive_id")
+    told, others = (
+        [row for row in rows if row["check_id"] != "clock_jump"] for rows in map(quality_rows, (expected, found))
+    )
+    assert told == others
+    assert "clock_jump" not in quality(expected)
+    times = [
+        [float(line.split(",")[0]) for line in shuffled[1:] if f",{name}," in line] for name in ("a", "b", "10", "9")
+    ]
+    back = sum(after < before for own in times for before, after in pairwise(own))
+    assert quality(found).get("clock_jump", {"n": 0})["n"] == back
+
+
+def quality_rows(trace: Trace) -> list[dict[str, object]]:
+    return [row | {"drive_id": None} for row in trace.tables["quality"].to_pylist()]
+
+
+def test_times_that_run_back_are_said_with_their_lines(tmp_path: Path) -> None:
+    lines = cars()
+    lines[3], lines[7] = lines[7], lines[3]  # a at 0.1 s and at 0.3 s
+    found = quality(read(table(tmp_path / "d.csv", lines), mapping=mapping(tmp_path)))["clock_jump"]
+    assert (found["severity"], found["n"]) == ("warning", 2)
+    assert "d.csv, lines 6, 8: the time is before that of the actor's previous row" in found["message"]
+    by_actor = [lines[0], *sorted(cars()[1:], key=lambda line: line.split(",")[1])]
+    assert "clock_jump" not in quality(read(table(tmp_path / "d.csv", by_actor), mapping=mapping(tmp_path)))
+
+
+def test_an_actor_that_changes_its_column_group_does_not_run_back(tmp_path: Path) -> None:
+    rows = [f"{k * 0.1:.1f},{'a' if k > 5 else 'b'},{k},{'b' if k > 5 else 'a'},{50 + k}" for k in range(12)]
+    of_group = {"actor_id": 'actor_id = "id{k}"', "x": 'x = "x{k}"', "y": "y = 0.0", "yaw": "yaw = 0.0"}
+    name = mapping(tmp_path, **of_group, vx="vx = 10.0", vy="vy = 0.0")
+    trace = read(table(tmp_path / "d.csv", ["t,id1,x1,id2,x2", *rows]), mapping=name)
+    assert log(trace)["n_states"] == 24
+    assert "clock_jump" not in quality(trace)
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import codes_of_texts
+from drivelint.drive.clock_restart import rows_back_in_time
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
@@ -37,7 +38,7 @@ from drivelint.phrases import hint, name_list
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.arrays import Codes, Floats, Mask, Times
+    from drivelint.arrays import Codes, Floats, Indices, Mask, Times
     from drivelint.formats.probe import Probe
     from drivelint.formats.tables.mapping import Field, Mapping, WordMapping
 
@@ -184,7 +185,7 @@ class _MappedTable:
             blank &= ~self.sheet.is_filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
         self._report_malformed_lines(n_rows)
-        parts, texts = [], []
+        parts, texts, row_numbers = [], [], []
         lost_rows = bad_time & ~blank
         for group in self.groups:
             ids = self._actor_ids(group, n_rows)
@@ -196,9 +197,11 @@ class _MappedTable:
             keep = ~(absent | bad_time)
             texts.append(ids.filter(pa.array(keep)))
             parts.append(self._states_of_group(group, n_rows, t_ns, keep))
+            row_numbers.append(np.flatnonzero(keep))
         ids = pc.dictionary_encode(pa.concat_arrays(texts))
         states = States.concatenate(parts)
         states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
+        self._report_rows_back_in_time(states, np.concatenate(row_numbers))
         convert_to_map_frame(states, self.mapping)
         self._report_unmapped_classes(states)
         return Recording(
@@ -326,6 +329,18 @@ class _MappedTable:
             follows = "not judged" if check == "dropped_row" else "those values are unknown"
             message = f"{self.path.name}, {self.sheet.describe_rows(np.flatnonzero(rows))}: {why}: {follows}"
             self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
+
+    def _report_rows_back_in_time(self, states: States, row_numbers: Indices) -> None:
+        """Add a finding with the rows whose time is before that of the actor's previous row. `row_numbers`: the row of each state."""
+        in_file = np.argsort(row_numbers, kind="stable")  # the states of a wide table follow each other by column group
+        back = in_file[rows_back_in_time(states.t_ns[in_file], states.actor[in_file])]
+        if len(back):
+            rows = np.unique(row_numbers[back])
+            message = (
+                f"{self.path.name}, {self.sheet.describe_rows(rows)}: the time is before that of the actor's previous row: "
+                "the rows are sorted by time"
+            )
+            self.findings.append(QualityFinding("clock_jump", "warning", message, len(rows), int(states.t_ns[back[0]])))
 
     def _report_unmapped_classes(self, states: States) -> None:
         """Add a finding with the unmapped texts of the class column, if the mapping finds no class for any actor."""

@@ -19,7 +19,7 @@ import msgspec
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.formats.search import is_pipe_or_device
-from drivelint.phrases import hint
+from drivelint.phrases import hint, path_hint
 from drivelint.sql.words import nearest_word_hint
 from drivelint.toml_text import parse_toml
 
@@ -183,7 +183,8 @@ def refuse_unknown_mapping(name: str) -> None:
     if is_pipe_or_device(name):
         raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and give that file")
     if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
-        raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
+        meant = path_hint(Path(name)) if name.endswith(".toml") else ""
+        raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {meant or hint(name, known)}")
 
 
 def load(name: str) -> tuple[str, Mapping]:

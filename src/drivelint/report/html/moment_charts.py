@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
 _HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a chart, of the text above it, of the time axis
+_LINE = 14.0  # of a second line of the text above a chart
 _MOST_JOINED_NS: Final = 1_000_000_000
 _LEAST_VALUES_FOR_CHART: Final = 3
 """The least number of values for which a chart is drawn."""
@@ -74,11 +75,13 @@ def charts_below_plan_view(
         for each in drawn
         if any(sum(v is not None for v in line.values) >= _LEAST_VALUES_FOR_CHART for line in each[2])
     ]
-    found = [
-        _chart_of_quantity(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
-        for n, each in enumerate(kept)
-    ]
-    height = len(found) * (_HEIGHT + _HEAD) + _FOOT
+    found: list[dict[str, Any]] = []
+    end = 0.0
+    for each in kept:
+        of_rule = course if each[2][0].kind == "limit" else None
+        found.append(_chart_of_quantity(end, *each, finding["t_worst_ns"], x=x, course=of_rule))
+        end = float(found[-1]["bottom"])
+    height = end + _FOOT
     return {
         "height": svg_number(height),
         "bottom": svg_number(height - _FOOT),
@@ -114,25 +117,31 @@ def box_distance_line(ego: Row, met: Row) -> ChartLine | None:
 
 
 def _chart_of_quantity(
-    n: int, title: str, unit: str, lines: Sequence[ChartLine], worst_ns: int, *, x: Axis, course: Row | None
+    begin: float, title: str, unit: str, lines: Sequence[ChartLine], worst_ns: int, *, x: Axis, course: Row | None
 ) -> dict[str, Any]:
-    """Return one chart: its frame, the axis of values, the lines, and the extreme values that the frame cuts off."""
-    top = n * (_HEIGHT + _HEAD) + _HEAD
+    """Return one chart: its frame, the axis of values, the lines, and the extreme values that the frame cuts off.
+
+    `begin`: the bottom of the chart above. If the title's line has no room for the values, they are on a second line.
+    """
     inside = [
         v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _is_on_axis(x, t)
     ]
     inside = inside or [v for line in lines for v in line.values if v is not None]
-    y, cut = axis_for_deciding_values(inside, _values_deciding_verdict(lines, course, worst_ns), top + _HEIGHT, top)
+    deciding = _values_deciding_verdict(lines, course, worst_ns)
+    _, cut = axis_for_deciding_values(inside, deciding, _HEIGHT, 0.0)
     cut_off = f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
     at_worst = _values_at_worst_text(lines, worst_ns)
     words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
-    beside = len(words) * _CHAR_WIDTH <= RIGHT - LEFT
+    label_y = begin + _HEAD - 5
+    value_y = label_y if len(words) * _CHAR_WIDTH <= RIGHT - LEFT else label_y + _LINE
+    top = value_y + 5
+    y, _ = axis_for_deciding_values(inside, deciding, top + _HEIGHT, top)
     return {
         "title": title,
         "unit": unit,
         "top": svg_number(top),
-        "label_y": svg_number(top - 5),
-        "value_y": svg_number(top - 5 if beside else top + 11),  # below the title if the line has no room for both
+        "label_y": svg_number(label_y),
+        "value_y": svg_number(value_y),
         "height": svg_number(_HEIGHT),
         "bottom": svg_number(top + _HEIGHT),
         "zero": svg_number(y.at(0.0)) if y.low < 0 < y.high else "",
