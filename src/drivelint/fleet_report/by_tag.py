@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MAX_TAG_VALUES: Final = 12
 MAX_RULES: Final = 12
-_SHOWN_PREFIX: Final = "shown_"
+_SHOWN_DRIVES_VIEW_PREFIX: Final = "shown_"
 
 
 class RuleRatesByTag(NamedTuple):
@@ -59,10 +59,10 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
             con.execute(statement("fleet_report/tag_drives", value=tag_or_situation_sql(tag)), parameters_of_tag(tag))
             for table in ("drives", "verdicts", "findings"):
                 con.execute(
-                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
+                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN_DRIVES_VIEW_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
                 )
-            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}rules AS FROM rules")
-            of = _SHOWN_PREFIX
+            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN_DRIVES_VIEW_PREFIX}rules AS FROM rules")
+            of = _SHOWN_DRIVES_VIEW_PREFIX
     by_rule: dict[tuple[str, str | None], list[Rate]] = {}
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import duckdb
 
 from drivelint.errors import UsageError
-from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
+from drivelint.fleet.compare import UNCHANGED_INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE_PREFIX
@@ -293,7 +293,7 @@ def _change_or_reason(row: Row) -> str:
     if row["margin"] != row["base_margin"]:
         notes.append(f"margin {number(row['margin'], row['unit'])}, was {number(row['base_margin'], row['unit'])}")
     ends = [abs(row[name] - row[f"base_{name}"]) for name in ("from_s", "to_s")]
-    if max(ends) > INTERVAL_TOLERANCE_S:
+    if max(ends) > UNCHANGED_INTERVAL_TOLERANCE_S:
         now, was = (f"{row[f'{of}from_s']:.2f} s to {row[f'{of}to_s']:.2f} s" for of in ("", "base_"))
         notes.append(f"{now}, was {was}")
     return "; ".join(notes)

@@ -9,7 +9,7 @@ import msgspec
 
 from drivelint.errors import ExitCode
 from drivelint.fleet_report.difference import NOTHING_IN_COMMON
-from drivelint.fleet_report.figures import figure, percent_with_interval, rate_with_interval
+from drivelint.fleet_report.figures import number_text, percent_with_interval, rate_with_interval
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import escape_markdown, markdown_code
@@ -133,12 +133,12 @@ def rate_line(change_and_test: tuple[RateChange, RateTest]) -> str:
     change, test = change_and_test
     was, now = both_rate_texts(test)
     name = f"{rate_name(change)} per {test.per}"
-    return f"{name}: {was}, now {now}: {ratio_text(test)}, p {figure(test.p_value)}, corrected {figure(test.corrected)}"
+    return f"{name}: {was}, now {now}: {ratio_text(test)}, p {number_text(test.p_value)}, corrected {number_text(test.corrected)}"
 
 
 def ratio_text(test: RateTest) -> str:
     """Return the ratio of the later rate to the earlier one as text."""
-    return "none before" if test.ratio == math.inf else f"{figure(test.ratio)} times"
+    return "none before" if test.ratio == math.inf else f"{number_text(test.ratio)} times"
 
 
 def both_rate_texts(test: RateTest) -> list[str]:

@@ -47,7 +47,7 @@ class MomentsPage(NamedTuple):
 
 
 def worst_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
-    """Return the worst drives that have a page and findings, after `drive_pages.choose_drives`.
+    """Return the worst drives that have a page and findings, after `drive_pages.choose_drives_and_return_page_names`.
 
     `n`: number of drives; None: `DEFAULT_N_DRIVES`, without drives of more than `DEFAULT_MAX_STATES` states.
     """

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
-from drivelint.fleet_report.drive_pages import FOLDER, is_page_name
+from drivelint.fleet_report.drive_pages import DRIVE_PAGES_FOLDER, is_page_name
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from drivelint.audit.store import ResultStore
 
-LIST_FILE: Final = f"{FOLDER}/pages.json"
+LIST_FILE: Final = f"{DRIVE_PAGES_FOLDER}/pages.json"
 _JSON_KEY: Final = "written_by_drivelint"
 
 
