@@ -13,7 +13,7 @@ from drivelint.fleet.compare import UNCHANGED_INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE_PREFIX
-from drivelint.fleet_report.rows import counted_finding_ids_sql, query_rows
+from drivelint.fleet_report.rows import counted_finding_of_each_finding_sql, query_rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS, rows_and_findings_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
@@ -203,7 +203,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
     """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE_PREFIX), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
-    counted = {f"{side}_counted": counted_finding_ids_sql(of) for side, of in sides.items()}
+    counted = {f"{side}_counted": counted_finding_of_each_finding_sql(of) for side, of in sides.items()}
     (gating,) = query_rows(con, "gating", None, **sides, **counted)
     only = [query_rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}

@@ -83,7 +83,7 @@ def _write_html(
     results = fleet.audit.results
     names = drive_pages.choose_drives_and_return_page_names(con, most_drives)
     drives = moment_pages.worst_drives(con, most_moments)
-    with page_files.maintain_page_list(
+    with page_files.list_pages_and_remove_earlier_ones(
         results, [*names, *(moment_pages.moments_page_name(drive["key"]) for drive in drives)]
     ) as written:
         links: dict[str, drive_pages.MomentsLink] = {}

@@ -19,7 +19,7 @@ _JSON_KEY: Final = "written_by_drivelint"
 
 
 @contextmanager
-def maintain_page_list(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
+def list_pages_and_remove_earlier_ones(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
     """List the pages in `pages.json`; after the block, remove the pages of an earlier report that are not among `names`.
 
     Yields the set of the names: a caller that does not write one of the pages discards its name. During the block, the list also has the

@@ -174,7 +174,7 @@ def _pose_columns(poses: Poses) -> dict[str, Floats]:
 def _ego_states(steps: Times, poses: Poses, ids: list[str]) -> States:
     n = len(steps)
     numbers = _pose_columns(poses) | {
-        name: np.full(n, size) for name, size in zip(_SIZE_COLUMNS, vehicle.BOX_SIZE_M, strict=True)
+        name: np.full(n, size) for name, size in zip(_SIZE_COLUMNS, vehicle.EGO_BOX_SIZE_M, strict=True)
     }
     classes, _ = class_codes(pa.array([EGO_CATEGORY] * n), SENSOR_CLASSES)
     return States(ids, np.zeros(n, np.int32), steps, numbers, {"actor_class": classes}, np.zeros(n, np.bool_))

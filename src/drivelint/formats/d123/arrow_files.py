@@ -71,7 +71,7 @@ def read_modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> 
     return ModalityFile(path, columns, schema_metadata(path, rows.schema))
 
 
-def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
+def frame_table_columns_and_log_info(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
     """Return the columns of the table of frames, and the metadata of the log.
 
     The columns are `timestamp_us` and, for each other file, the number of its row in the frame (NULL: the file has no row for it).

@@ -24,9 +24,9 @@ from drivelint.formats.d123.arrow_files import (
     LIGHTS,
     SYNC,
     file_path,
+    frame_table_columns_and_log_info,
     integers,
     read_modality,
-    sync_table,
 )
 from drivelint.formats.d123.clock import converter_from_times
 from drivelint.formats.d123.lights import light_states, read_lights
@@ -70,7 +70,7 @@ def read(probe: Probe) -> Recording:
     a usable frame.
     """
     folder = probe.path
-    sync, info = sync_table(folder)
+    sync, info = frame_table_columns_and_log_info(folder)
     about = facts.dataset_facts(info.dataset)
     ego, boxes, lights = ego_file.read_ego(folder), box_file.read_boxes(folder), read_lights(folder)
     files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
@@ -121,7 +121,7 @@ def read(probe: Probe) -> Recording:
 
 def log_time_converter(folder: Path) -> LogTimeConverter:
     """Return the clock with which `read` reads a log. Errors: as `read`."""
-    sync, info = sync_table(folder)
+    sync, info = frame_table_columns_and_log_info(folder)
     files = [read_modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
     times = [file.columns["timestamp_us"] for file in files if file is not None]
     return converter_from_times(folder, [sync["timestamp_us"], *times], utc=facts.dataset_facts(info.dataset).utc)
