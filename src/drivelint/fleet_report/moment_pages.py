@@ -49,7 +49,8 @@ class MomentsPage(NamedTuple):
 def worst_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
     """Return the worst drives that have a page and findings, after `drive_pages.choose_drives_and_return_page_names`.
 
-    `n`: number of drives; None: `DEFAULT_N_DRIVES_WITH_MOMENTS`, without drives of more than `DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS` states.
+    `n`: number of drives; None: `DEFAULT_N_DRIVES_WITH_MOMENTS`, without drives of more than
+    `DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS` states.
     """
     bound = {
         "most": DEFAULT_N_DRIVES_WITH_MOMENTS if n is None else n,

@@ -87,10 +87,10 @@ def frame_table_columns_and_log_info(folder: Path) -> tuple[dict[str, pa.Array],
 def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
     """Return data set, location and version of a log or map. Errors: `TraceError` for a version that is not read."""
     version, location = str(entries.get("version", "unknown")), entries.get("location")
-    if not facts.is_read_version(version):
+    if not facts.is_supported_version(version):
         raise TraceError(
-            f"{path}: py123d {version} wrote the file, but only the versions {facts.READ_VERSIONS[0]} to "
-            f"{facts.READ_VERSIONS[-1]} are supported: convert the log again with one of these"
+            f"{path}: py123d {version} wrote the file, but only the versions {facts.SUPPORTED_VERSIONS[0]} to "
+            f"{facts.SUPPORTED_VERSIONS[-1]} are supported: convert the log again with one of these"
         )
     return LogInfo(str(entries.get("dataset", "")), None if location is None else str(location), version)
 

@@ -79,7 +79,8 @@ def box_states(
     numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
     numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
     riders, ridden = (
-        np.isin(integers(flat["label"]), numbers_of) for numbers_of in facts.rider_labels(_label_enumeration(boxes))
+        np.isin(integers(flat["label"]), numbers_of)
+        for numbers_of in facts.rider_and_ridden_label_numbers(_label_enumeration(boxes))
     )
     inside, on_something = join_riders(t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers)
     states = States(
