@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from drivelint.explain.model import Explanation, Row
 
-EXPLAIN_SCHEMA: Final = 1
+EXPLAIN_SCHEMA_VERSION: Final = 1
 """The version of the JSON, increased when a key changes its meaning or is removed."""
 PLOT_HEIGHT: Final = 8
 _TABLE_ROW_INDENT: Final = 4
@@ -57,7 +57,7 @@ _REASONS_NOT_TO_APPLY: Final = {
 
 def to_json(explanation: Explanation) -> str:
     """Return the explanation as JSON; a step is [t_ns, observed, required, margin, holds]."""
-    plain = {"explain_schema": EXPLAIN_SCHEMA, **_with_json_keys(asdict(explanation))}
+    plain = {"explain_schema": EXPLAIN_SCHEMA_VERSION, **_with_json_keys(asdict(explanation))}
     plain["series"] = [list(step) for step in explanation.series]
     plain["rows"] = [rows._asdict() for rows in explanation.rows]
     plain["parts"] = [_with_json_keys(part._asdict()) for part in explanation.parts]
@@ -81,7 +81,7 @@ def render(explanation: Explanation, width: int) -> Group:
         ("What would change it", prose["changes"]),
         (
             "Margin over time" if explanation.rule["sense"] != "holds" else "Over time",
-            _plot_and_key_lines(explanation, width),
+            _plot_and_legend_lines(explanation, width),
         ),
         ("Data on which it was judged", prose["rows"]),
         ("What the rule requires", prose["asks"]),
@@ -196,7 +196,7 @@ def _column_comment(text: str, value: Any) -> str:
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 
-def _plot_and_key_lines(explanation: Explanation, width: int) -> list[str]:
+def _plot_and_legend_lines(explanation: Explanation, width: int) -> list[str]:
     unit = one_line(explanation.rule["unit"] or "")
     lines = [
         f"|{line}"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.trend import Trend
     from drivelint.fleet_report.difference import AuditDifference
 
-AUDIT_DIFF_SCHEMA: Final = 1
+AUDIT_DIFF_SCHEMA_VERSION: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 _MAX_LISTED_RATES: Final = 3
 """A sentence lists at most this many rates that have risen."""
@@ -176,7 +176,7 @@ def _text_on_one_line(value: Any) -> Any:
 def to_json(difference: AuditDifference, fail_on: str | None) -> str:
     """Return a difference as JSON: all counts, the first entries of each standing, and how many entries are left out."""
     content = {
-        "audit_diff_schema": AUDIT_DIFF_SCHEMA,
+        "audit_diff_schema": AUDIT_DIFF_SCHEMA_VERSION,
         "exit": {
             "code": int(exit_code(difference, fail_on)),
             "why": _exit_line(difference, fail_on).partition(": ")[2],

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.rates import Rate
 
-TREND_SCHEMA: Final = 1
+TREND_SCHEMA_VERSION: Final = 1
 """Version of the JSON: raised when a key changes its meaning or is removed."""
 
 
@@ -195,7 +195,7 @@ def _aligned_lines(cells: list[list[str]]) -> list[str]:
 def to_json(trend: AuditTrend) -> str:
     """Return a trend as JSON: the counts of each audit, and every rule with a finding, its rates and its test."""
     content = {
-        "trend_schema": TREND_SCHEMA,
+        "trend_schema": TREND_SCHEMA_VERSION,
         "exit": {"code": int(trend.exit_code), "why": trend.headline},
         "audits": [each._asdict() for each in trend.audits],
         "rules": [
