@@ -30,7 +30,7 @@ from drivelint.formats.foxglove.decode import (
 from drivelint.formats.foxglove.entity_lifetime import with_states_between_updates
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import lost_times_of_parts
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.storage import recorded_file
@@ -86,7 +86,9 @@ def read(path: Path, topic: str | None) -> Recording:
         for name, log_messages in message_batches(container, partial(_readable_message_type, topic, unread)):
             channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
-            decoded, readable = decode_readable(container, log_messages, partial(decoded_rows, file, schema))
+            decoded, readable = decode_readable_and_record_losses(
+                container, log_messages, partial(decoded_rows, file, schema)
+            )
             if decoded is None:
                 continue
             log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)

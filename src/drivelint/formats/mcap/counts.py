@@ -43,7 +43,7 @@ class MessageCounts:
         """End the chunk, after all its messages were read."""
         self._open_chunk, self._last_chunk = None, self._open_chunk
 
-    def missing_times_of_chunk(self, index: memoryview) -> list[int]:
+    def count_missing_messages_of_chunk_and_return_times(self, index: memoryview) -> list[int]:
         """Return the log times of messages that are in the message index after a chunk, but not in the chunk.
 
         These messages are added to the counts, because the caller reports them as lost.

@@ -29,7 +29,7 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
-from drivelint.formats.mcap.malformed import decode_readable, decode_without_malformed
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses, decode_without_malformed
 from drivelint.formats.mcap.reader import Container, LogMessage, message_batches
 from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.unread import UnreadTopics
@@ -84,7 +84,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
                 decoder.lights = first_message.lights
-            frames, readable = decode_readable(container, log_messages, decoder.frames)
+            frames, readable = decode_readable_and_record_losses(container, log_messages, decoder.frames)
             if frames is not None:
                 batches.append(frames)
             log_ns += [log_message.log_time_ns for log_message in readable]
@@ -208,7 +208,7 @@ def read(probe: Probe) -> Recording:
                     end = log_message.offset + trace_file.LENGTH_FIELD_BYTES + len(log_message.data)
                     losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
-                    losses.bound_by_message(next(times))
+                    losses.bound_loss_times_by_message(next(times))
             if frames is not None:
                 batches.append(frames)
     if not batches:

@@ -10,7 +10,7 @@ import numpy as np
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag import missing_message_findings
 from drivelint.formats.mcap.losses import lost_times_of_parts
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
@@ -78,7 +78,7 @@ class Log:
             for kind, log_messages in message_batches(container, partial(self._kind_if_read, file, decoders)):
                 channel = log_messages[0].channel
                 decoder = decoders[channel.schema_id]
-                table, readable = decode_readable(container, log_messages, decoder.table)
+                table, readable = decode_readable_and_record_losses(container, log_messages, decoder.table)
                 if table is None:
                     continue
                 log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)

@@ -18,7 +18,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import clean_frame_name
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.bag import missing_message_findings
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.ros2 import topic_mapping
@@ -127,7 +127,7 @@ class _MappedMessages:
 
         for topic, log_messages in message_batches(container, mapped_topic):
             decoder = decoders[topic, log_messages[0].channel.schema_id]
-            table, _ = decode_readable(container, log_messages, decoder.table)
+            table, _ = decode_readable_and_record_losses(container, log_messages, decoder.table)
             if table is not None:
                 self._parts.setdefault(topic, []).append((table, self._times(topic, table)))
         self._containers.append(container)
