@@ -12,7 +12,7 @@ from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, S
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, list_lengths, read_modality, vectors
-from drivelint.formats.riders import join_riders
+from drivelint.formats.riders import join_riders_and_return_merged_rows_and_rider_tracks
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ def box_states(
         np.isin(integers(flat["label"]), numbers_of)
         for numbers_of in facts.rider_and_ridden_label_numbers(_label_enumeration(boxes))
     )
-    inside, on_something = join_riders(t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers)
+    inside, on_something = join_riders_and_return_merged_rows_and_rider_tracks(
+        t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers
+    )
     states = States(
         [str(token) for token in tracks.dictionary.to_pylist()],
         integers(tracks.indices).astype(np.int32),

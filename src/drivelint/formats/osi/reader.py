@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
 formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
 takes_mapping: Final = False
-_READ_MESSAGES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
+_READABLE_MESSAGE_TYPES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
 
 
 def accepts(probe: Probe) -> bool:
@@ -133,7 +133,7 @@ def _message_type_to_read(
     truth_topics: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema
 ) -> str | None:
     """Return the message type of a channel; None if it is not read. Topics of ground truth are added to `truth_topics`."""
-    if schema.name not in _READ_MESSAGES:
+    if schema.name not in _READABLE_MESSAGE_TYPES:
         return None
     encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
     if channel.message_encoding != encoding or (encoding == "protobuf" and schema.encoding != encoding):
