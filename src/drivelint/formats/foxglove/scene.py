@@ -39,11 +39,11 @@ from drivelint.formats.protobuf.descriptors import list_items_and_row_indices, s
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
-    choose_clock,
     distinct_values,
     frame_times_and_start,
     join_batches,
     recorded_poses,
+    set_times_and_return_are_own_times,
     states_in_fixed_frame,
 )
 from drivelint.phrases import name_list
@@ -209,7 +209,7 @@ def _recording(
     if scene.without_box:
         message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
-    own_times = choose_clock({topic: rows}, findings)
+    own_times = set_times_and_return_are_own_times({topic: rows}, findings)
     frames = _transform_tree(transforms, own_times=own_times)
     rows = with_states_between_updates(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct_values(rows.frames)[0]))

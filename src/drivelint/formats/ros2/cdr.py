@@ -50,7 +50,7 @@ _PADDING_BY_LENGTH: Final = [b"\0" * n for n in range(_MOST_ALIGNMENT_BYTES)]
 _TEXT_CODE = "S1"
 MOST_NAME_BYTES = 4096
 """The longest text that can be the name of a frame, a class or an actor. Each text of a batch takes as much memory as the longest."""
-_LONG_TEXTS: Final = frozenset({"opendrive"})
+_MEMBERS_WITH_LONG_TEXT: Final = frozenset({"opendrive"})
 """Members whose text is not a name, but a whole map."""
 _SIZE_BY_TYPE: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
 """Primitive or text type -> its size in bytes; 0: variable."""
@@ -288,7 +288,7 @@ class _MessageBatch:
                     cursor += np.where(length > 0, -cursor & (step.size - 1), 0)
                 if step.keep is not None:
                     if step.code == _TEXT_CODE:
-                        self._check_names(step.keep, length, message)
+                        self._check_name_lengths(step.keep, length, message)
                     walk.start[i], walk.length[i] = cursor.copy(), length
                 cursor += length * (step.size * step.per_item)
             else:
@@ -360,10 +360,10 @@ class _MessageBatch:
         letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
         return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
 
-    def _check_names(self, path: str, length: Offsets, message: Rows) -> None:
+    def _check_name_lengths(self, path: str, length: Offsets, message: Rows) -> None:
         """Check that texts are short enough to be names. One long text would multiply the memory of its whole batch."""
         beyond = length > MOST_NAME_BYTES
-        if beyond.any() and path.rpartition(".")[2] not in _LONG_TEXTS:
+        if beyond.any() and path.rpartition(".")[2] not in _MEMBERS_WITH_LONG_TEXT:
             i = int(np.argmax(beyond))
             raise self._misfit_error(
                 int(message[i]), f"has {length[i]} bytes in {path}, where a name has at most {MOST_NAME_BYTES}"
