@@ -81,7 +81,10 @@ def _riders_and_vehicles(
 
 
 def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
-    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or within `MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M` beside it."""
+    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or just beside it.
+
+    Just beside: within `MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M`.
+    """
     dx, dy = _relative_position(on, under, boxes)
     half_length, half_width = (
         boxes[name][under] / 2 + MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M for name in _SIZE_COLUMNS[:2]
