@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.figures import LogarithmicAxis
 
 MAX_TAG_VALUES: Final = 12
-MAX_RULES: Final = 12
+MAX_SHOWN_RULES: Final = 12
 _SHOWN_DRIVES_VIEW_PREFIX: Final = "shown_"
 
 
@@ -77,11 +77,11 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
             each.profile or "",
         ),
     )
-    left = found[MAX_RULES:]
+    left = found[MAX_SHOWN_RULES:]
     return RatesByTag(
         tag,
-        found[:MAX_RULES],
-        logarithmic_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
+        found[:MAX_SHOWN_RULES],
+        logarithmic_axis(rate.per_100km for each in found[:MAX_SHOWN_RULES] for rate in each.rates),
         max(0, n_values - MAX_TAG_VALUES),
         len(left),
         sum(map(_n_findings, left)),

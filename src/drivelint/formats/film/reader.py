@@ -85,7 +85,7 @@ def read(probe: Probe) -> Recording:
     if not len(frames):
         raise TraceError(f"{path}: no frame is in the range of the mapping {stem!r}: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
-    states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
+    states, egos_x = _states_and_ego_x_range(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's path across them"
     message = (
         f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
@@ -146,7 +146,7 @@ def _distances_in_table(
     return DistancesAhead(whole, ahead)
 
 
-def _states(
+def _states_and_ego_x_range(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
     """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MESSAGE_INDEX_HEADER: Final = struct.Struct("<HI")
 """The header of a message index: channel id, and length in bytes of the entries that follow."""
-_INDEX_ENTRY: Final = struct.Struct("<QQ")
+_MESSAGE_INDEX_ENTRY: Final = struct.Struct("<QQ")
 _MOST_LISTED_CONTRADICTIONS: Final = 3
 
 
@@ -50,9 +50,9 @@ class MessageCounts:
         """
         channel, length = MESSAGE_INDEX_HEADER.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
-        if found is None or length <= _INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
+        if found is None or length <= _MESSAGE_INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
             return []
-        named = Counter(log_ns for log_ns, _ in _INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
+        named = Counter(log_ns for log_ns, _ in _MESSAGE_INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
         missing = sorted((named - Counter(found)).elements())
         self.by_channel[channel] += len(missing)
         return missing
