@@ -116,7 +116,7 @@ def pages(
     )
     con.execute(statement("fleet_report/page_verdicts"))
     (n_pages,) = con.execute("SELECT count(*) FROM page_drive").fetchone() or (0,)
-    template = _environment().get_template("drive.html.j2")
+    template = _template_environment().get_template("drive.html.j2")
     same = {
         "audit": audit,
         "titles": {rule_id: rule["title"] for rule_id, rule in rules.items()},
@@ -188,7 +188,7 @@ def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, i
 
 
 @cache
-def _environment() -> Environment:
+def _template_environment() -> Environment:
     environment = page_environment(
         ("tables.js",),
         _HERE / "templates",

@@ -100,7 +100,7 @@ def _write_html(
 
 def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
     """Return the page as HTML in UTF-8. The same audit gives the same bytes. `links`: key of a drive -> relative URL of its page."""
-    text = _environment().get_template("fleet.html.j2").render(_template_values(fleet), links=links)
+    text = _template_environment().get_template("fleet.html.j2").render(_template_values(fleet), links=links)
     return text.encode("utf-8", "replace")
 
 
@@ -171,7 +171,7 @@ _FILTERS: Final[dict[str, Any]] = {
 
 
 @cache
-def _environment() -> Environment:
+def _template_environment() -> Environment:
     environment = page_environment(("tables.js", "report.js"), _HERE / "templates", ("fleet.css",))
     environment.filters |= _FILTERS
     return environment

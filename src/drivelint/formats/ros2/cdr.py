@@ -112,7 +112,7 @@ class _NumbersOrTextDecodeStep:
     keep: str | None
 
     @property
-    def size(self) -> int:
+    def bytes_per_primitive(self) -> int:
         """The bytes of one primitive."""
         return int(self.code[1])
 
@@ -283,14 +283,14 @@ class _MessageBatch:
             elif isinstance(step, _AlignmentDecodeStep):
                 cursor += -cursor & (step.to - 1)
             elif isinstance(step, _NumbersOrTextDecodeStep):
-                length = self._read_lengths(cursor, end, message, step.size * step.per_item)
-                if step.size > 4:  # a length is four bytes, and stands at a multiple of four
-                    cursor += np.where(length > 0, -cursor & (step.size - 1), 0)
+                length = self._read_lengths(cursor, end, message, step.bytes_per_primitive * step.per_item)
+                if step.bytes_per_primitive > 4:  # a length is four bytes, and stands at a multiple of four
+                    cursor += np.where(length > 0, -cursor & (step.bytes_per_primitive - 1), 0)
                 if step.keep is not None:
                     if step.code == _TEXT_CODE:
                         self._check_name_lengths(step.keep, length, message)
                     walk.start[i], walk.length[i] = cursor.copy(), length
-                cursor += length * (step.size * step.per_item)
+                cursor += length * (step.bytes_per_primitive * step.per_item)
             else:
                 parts = self._find_item_values(step, cursor, end, message)
                 if step.keep is not None:
@@ -331,7 +331,7 @@ class _MessageBatch:
         first = np.full((len(start), MAX_KEPT_NUMBERS), np.nan)
         for k in range(MAX_KEPT_NUMBERS):
             has = np.flatnonzero(length > k)
-            first[has, k] = self._values_at(step.code, start[has] + k * step.size, None)
+            first[has, k] = self._values_at(step.code, start[has] + k * step.bytes_per_primitive, None)
         return first
 
     def _values_at(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
