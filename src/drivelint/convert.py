@@ -226,7 +226,7 @@ def _write_mcap_and_return_file_sizes(
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with temporary.open("wb") as file:
-            osi_log.write(file, trace, road, as_recorded=as_recorded)
+            osi_log.write_and_count_messages(file, trace, road, as_recorded=as_recorded)
         size = temporary.stat().st_size
         publish(target.parent, {}, {target.name: temporary})
     except OSError as error:

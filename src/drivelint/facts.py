@@ -20,10 +20,10 @@ def toml_beside(module_file: str, name: str) -> dict[str, Any]:
 def toml_facts(file: Path) -> dict[str, Any]:
     """Return the content of a TOML file that is part of drivelint."""
 
-    def parse() -> dict[str, Any]:
+    def parse_toml() -> dict[str, Any]:
         import tomllib
 
         return tomllib.loads(text)
 
     text = file.read_text(encoding="utf-8")
-    return _TOML_MEMO.find_or_compute(text, parse)
+    return _TOML_MEMO.find_or_compute(text, parse_toml)

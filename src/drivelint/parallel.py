@@ -25,7 +25,7 @@ from drivelint.engine.default_rules import with_selectors_of_run
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
 from drivelint.errors import DriveLintError, ExitCode, InternalError
-from drivelint.formats.files import file_states
+from drivelint.formats.files import file_names_sizes_and_change_times
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
 from drivelint.report.log_notes import LogNotes, same_log_note
@@ -151,7 +151,7 @@ def _cut_into_parts(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
     sizes = []
     for path in paths:
         with suppress(DriveLintError):
-            sizes.append(sum(size for _, size, _ in file_states(path)))
+            sizes.append(sum(size for _, size, _ in file_names_sizes_and_change_times(path)))
             continue
         sizes.append(0)
     whole, done = sum(sizes) + len(paths), 0

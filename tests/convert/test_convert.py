@@ -206,7 +206,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
         sink.write(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("drivelint.formats.osi.writer.write", full)
+    monkeypatch.setattr("drivelint.formats.osi.writer.write_and_count_messages", full)
     with pytest.raises(OutputError, match=r"safe\.mcap: cannot be written: No space left") as error:
         convert(ConvertRequest(str(FIXTURE / "safe.csv"), "mcap", tmp_path, **SAFE))
     assert error.value.exit_code == 75

@@ -10,7 +10,7 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS, States
 from drivelint.formats.osi.encode import encode_ground_truths, moving_objects
-from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
+from drivelint.formats.osi.schema import GROUND_TRUTH, WRITTEN_OSI_VERSION, descriptor_set
 from tests.demo.opendrive import GENERATOR
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def osi_mcap(scene: Scene) -> bytes:
     sink = io.BytesIO()
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
     writer.start(library=GENERATOR)
-    version = ".".join(map(str, VERSION))
+    version = ".".join(map(str, WRITTEN_OSI_VERSION))
     schema = writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set())
     channel = writer.register_channel(TOPIC, "protobuf", schema, {"net.asam.osi.trace.channel.osi_version": version})
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)

@@ -18,7 +18,7 @@ from rich.console import Console
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, VerdictFilter, explain
 from drivelint.explain.target import _complete_name
-from drivelint.explain.text import _rounded_sentence, render, to_json
+from drivelint.explain.text import _sentence_with_rounded_numbers, render, to_json
 from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
 
@@ -86,7 +86,9 @@ def test_the_conclusion_stands_first_and_the_sql_last(folder: Path) -> None:
 
 
 def test_a_value_that_is_nearly_nothing_keeps_its_digits() -> None:
-    told = _rounded_sentence("Distance 0.00421 m at 7.700 s, object 3.1234 where more than -1.23456 m/s2 is required")
+    told = _sentence_with_rounded_numbers(
+        "Distance 0.00421 m at 7.700 s, object 3.1234 where more than -1.23456 m/s2 is required"
+    )
     assert told == "Distance 0.0042 m at 7.70 s, object 3.1234 where more than -1.23 m/s2 is required"
 
 

@@ -90,10 +90,10 @@ def test_it_agrees_with_the_gate_on_real_results(
 def test_its_rules_of_matching_are_the_gates() -> None:
     numbers = (match.NEAR_S, match.NEAR_M, diff.MARGIN_TOLERANCE, diff.INTERVAL_TOLERANCE_S)
     assert numbers == (
-        compare_module.NEAR_S,
-        compare_module.NEAR_M,
-        compare_module.MARGIN_TOLERANCE,
-        compare_module.INTERVAL_TOLERANCE_S,
+        compare_module.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S,
+        compare_module.MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M,
+        compare_module.UNCHANGED_MARGIN_TOLERANCE,
+        compare_module.UNCHANGED_INTERVAL_TOLERANCE_S,
     )
 
 

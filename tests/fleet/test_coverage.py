@@ -30,7 +30,7 @@ def test_each_rule_has_one_standing() -> None:
     expected = ("decided", "never_decided", "never_in_force", "never_triggered", "not_run")
     assert [(each.rule_id, each.standing) for each in found.rules] == list(zip(names, expected, strict=True))
     assert set(expected) == set(STANDINGS)
-    assert found.with_standing("never_triggered")[0].drives_not_triggered == 1
+    assert found.rules_with_standing("never_triggered")[0].drives_not_triggered == 1
     assert (found.rules[0].drives_unknown, found.rules[0].occasions) == (1, 1)
 
 
@@ -107,9 +107,9 @@ def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Check
         if row["verdict"] in {"unknown", "error"} or row["reason_code"].startswith("unrecorded_")
     }
     assert undecided - decided, "no log of this fleet records headlights"
-    assert {each.rule_id for each in found.with_standing("decided")} == decided
-    assert {each.rule_id for each in found.with_standing("never_decided")} == undecided - decided
-    assert found.with_standing("never_triggered")
+    assert {each.rule_id for each in found.rules_with_standing("decided")} == decided
+    assert {each.rule_id for each in found.rules_with_standing("never_decided")} == undecided - decided
+    assert found.rules_with_standing("never_triggered")
     assert sum(r.n_fail for r in counted) == sum(row["verdict"] == "fail" for row in verdicts)
     assert (
         sum(r.findings + r.findings_of_unknown for r in counted)

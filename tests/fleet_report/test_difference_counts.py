@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import duckdb
 
-from drivelint.fleet_report.rows import counted_finding_ids_sql, query_rows
+from drivelint.fleet_report.rows import counted_finding_of_each_finding_sql, query_rows
 
 FINDING = """CREATE TABLE {of}findings AS SELECT * FROM (VALUES
     ('k', 'f1', 'r', 'nominal', 'ego', 'x', 100, 100, 10, 10),
@@ -27,14 +27,14 @@ def test_an_overtake_under_two_profiles_and_a_touch_of_two_egos_count_once() -> 
             con.execute(FINDING.format(of=of))
             con.execute(f"CREATE TABLE {of}rules AS SELECT unnest(['r', 't']) AS rule_id, 'stable' AS status")
         con.execute(DIFFERENCE)
-        ids = {row[1]: row[2] for row in con.execute(counted_finding_ids_sql("")).fetchall()}
+        ids = {row[1]: row[2] for row in con.execute(counted_finding_of_each_finding_sql("")).fetchall()}
         (told,) = query_rows(
             con,
             "gating",
             None,
             **sides,
-            new_counted=counted_finding_ids_sql(""),
-            base_counted=counted_finding_ids_sql("base_"),
+            new_counted=counted_finding_of_each_finding_sql(""),
+            base_counted=counted_finding_of_each_finding_sql("base_"),
         )
     assert {name: ids[name] for name in ("f1", "f2", "f3", "f4")} == {"f1": "f1", "f2": "f1", "f3": "f3", "f4": "f4"}
     assert ids["f5"] == ids["f6"] == "f5"

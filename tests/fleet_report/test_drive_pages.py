@@ -179,7 +179,7 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
         raise RuntimeError
 
     monkeypatch.setattr(drive_pages, "pages", broken)
-    monkeypatch.setattr(drive_pages, "choose_drives", lambda *_: [drive_pages.page_name("new")])
+    monkeypatch.setattr(drive_pages, "choose_drives_and_return_page_names", lambda *_: [drive_pages.page_name("new")])
     monkeypatch.setattr(moment_pages, "worst_drives", lambda *_: [])
     with pytest.raises(RuntimeError):
         ran("report", own_ten)
@@ -219,7 +219,7 @@ def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, by
         through: Any = con
         if counted is not None:
             counted.con, through = con, counted
-        drive_pages.choose_drives(through, most)
+        drive_pages.choose_drives_and_return_page_names(through, most)
         return dict(drive_pages.pages(through, told, found.rules))
 
 
@@ -249,7 +249,10 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         told = content_.fleet_content(con, audit, None, ())
-        assert drive_pages.choose_drives(con, None) == [drive_pages.page_name("a"), drive_pages.page_name("b")]
+        assert drive_pages.choose_drives_and_return_page_names(con, None) == [
+            drive_pages.page_name("a"),
+            drive_pages.page_name("b"),
+        ]
         made = dict(drive_pages.pages(con, audit, told.rules))
     lossy, whole = (parsed_bytes(made[drive_pages.page_name(key)]) for key in "ab")
     assert "Lossy: parts of the log were lost" in words(lossy.find(".//header"))
@@ -277,7 +280,7 @@ def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> No
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         told = content_.fleet_content(con, audit, None, ())
-        drive_pages.choose_drives(con, None)
+        drive_pages.choose_drives_and_return_page_names(con, None)
         ((_, made),) = drive_pages.pages(con, audit, told.rules)
     page = parsed_bytes(made)
     assert [row["critical"] for row in told.worst] == [1]

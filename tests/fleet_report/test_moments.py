@@ -128,7 +128,7 @@ def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.M
 
 
 def test_long_drives_are_left_out_unless_they_are_asked_for(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(moment_pages, "DEFAULT_MAX_STATES", 100)
+    monkeypatch.setattr(moment_pages, "DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS", 100)
     assert ran("report", own).code == 0
     assert not list(own.glob("drives/*-moments.html"))
     assert ran("report", own, "--moments", 2).code == 0

@@ -18,7 +18,7 @@ from drivelint.fleet.rates import rates
 from drivelint.fleet_report import difference_text
 from drivelint.fleet_report.audit_views import Audit
 from drivelint.fleet_report.difference import AuditDifference, difference
-from drivelint.fleet_report.figures import figure
+from drivelint.fleet_report.figures import number_text
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.report.synthetic import rule
@@ -163,7 +163,7 @@ def test_rates_are_tested_per_occasion_too(disjoint: AuditDifference) -> None:
     text = difference_text.to_text(disjoint, None)
     assert "Rates of 1 rule differ significantly (2 exact tests" in text
     assert "  differs: overtake per occasion: 2 of 22, 9.09 %" in text
-    assert f"7.79 times, p {figure(expected)}, corrected {figure(2 * expected)}" in text
+    assert f"7.79 times, p {number_text(expected)}, corrected {number_text(2 * expected)}" in text
 
 
 def test_the_nearest_candidates_are_shown_where_nothing_is_called() -> None:

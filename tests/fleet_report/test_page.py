@@ -111,10 +111,10 @@ def test_rules_with_findings_come_first_and_by_severity(written: Any) -> None:
 def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(written: Any, filled: lake.Lake) -> None:
     worst = section(written, "worst-drives")
     told = rows(worst)
-    assert len(told) == content_.MAX_DRIVES
+    assert len(told) == content_.MAX_DRIVES_PER_TABLE
     assert filled.worst_log in told[0]["drive"]
     assert int(told[0]["critical"]) >= lake.WORST
-    left = len(set(table(filled.folder, "findings")["key"])) - content_.MAX_DRIVES
+    left = len(set(table(filled.folder, "findings")["key"])) - content_.MAX_DRIVES_PER_TABLE
     assert f"{left:,} more drives have findings" in worst.text_content()
 
 

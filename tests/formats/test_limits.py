@@ -43,7 +43,7 @@ def test_reading_that_takes_too_much_is_a_sentence(
 def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither another thread, nor what follows, whenever it comes."""
     monkeypatch.setattr(limits, "BASE_CPU_S", -1.0)
-    monkeypatch.setattr(limits, "_CHECK_PERIOD_S", 0.0001)
+    monkeypatch.setattr(limits, "_READING_LIMIT_CHECK_PERIOD_S", 0.0001)
 
     def ends(n: int, times: int) -> set[int]:
         found = set()

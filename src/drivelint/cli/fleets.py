@@ -33,7 +33,7 @@ def write_report_of_audit(
     """Write a report of an audit into its folder, and print the name of the file."""
     from drivelint.fleet_report import gated, page
     from drivelint.fleet_report.audit_views import path_or_url
-    from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVES
+    from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVE_PAGES
 
     if to not in (*page.FORMATS, *gated.FORMATS):
         known = name_list([*page.FORMATS, *gated.FORMATS])
@@ -50,7 +50,11 @@ def write_report_of_audit(
         return
     if (drive_pages is not None or moments is not None) and to != "html":
         raise UsageError("--drive-pages and --moments are for --to html: the other formats are one file")
-    most = DEFAULT_N_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)
+    most = (
+        DEFAULT_N_DRIVE_PAGES
+        if drive_pages is None
+        else option_values.parse_number_or_all("--drive-pages", drive_pages)
+    )
     base = None if baseline is None else path_or_url(baseline)
     with progress(quiet) as listener:
         name, audit = run_interruptible(

@@ -21,10 +21,14 @@ from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import nearest_changes_of_verdict
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import errors_with_default_samples, sensitivity_of_check, verdict_sensitivity
-from drivelint.explain.source import open_drive
+from drivelint.explain.sensitivity import (
+    measurement_errors_with_default_number_of_copies,
+    sensitivity_from_copies_of_check,
+    verdict_sensitivity,
+)
+from drivelint.explain.source import open_judged_drive_and_source_text
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
+from drivelint.explain.verdict_context import VerdictContext, lacks_signal, shortest_part_with_same_verdict
 from drivelint.reasons import reason_text
 from drivelint.reasons.signals import unknown_condition_column
 from drivelint.result import request as run_request
@@ -77,7 +81,7 @@ def explain(request: ExplainRequest) -> Explanation:
     case = _context_of_verdict(run_options, target, result.rules, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
-    drive, source = open_drive(
+    drive, source = open_judged_drive_and_source_text(
         request.folder,
         run_options,
         row["drive_id"],
@@ -149,11 +153,11 @@ def _changes_and_sensitivity(
     `whole_sandbox`: a sandbox with the whole drive, on which the verdict is `verdict`. The sensitivity is None if no copies were requested.
     """
     row = context.target.verdict_row
-    part, span, sandbox = sufficient_part(context, drive, whole_sandbox, verdict, exit_stack)
+    part, span, sandbox = shortest_part_with_same_verdict(context, drive, whole_sandbox, verdict, exit_stack)
     sensitivity = None
     if context.rule.version == row["rule_version"] and verdict == row["verdict"]:
-        sensitivity = sensitivity_of_check(context.target.worst_finding, errors)
-    of_verdict = errors_with_default_samples(errors, row["verdict"])
+        sensitivity = sensitivity_from_copies_of_check(context.target.worst_finding, errors)
+    of_verdict = measurement_errors_with_default_number_of_copies(errors, row["verdict"])
     if of_verdict.samples and sensitivity is None:
         sensitivity = verdict_sensitivity(context, part, of_verdict, span)
     return nearest_changes_of_verdict(context, sandbox, verdict), sensitivity

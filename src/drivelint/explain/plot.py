@@ -34,11 +34,11 @@ def plot_lines(steps: Sequence[Step], width: int, height: int, drive_start_ns: i
         return []
     columns = [column for column in _columns(steps, width) for _ in range(max(1, width // len(steps)))]
     measured = any(column.margin is not None for column in columns)
-    label = max(9, len(unit) + 8)
+    label_width = max(9, len(unit) + 8)
     strip = "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.has_step else " " for c in columns)
-    body = _bar_lines(columns, height, label, unit) if measured else [" " * label + " " + strip]
+    body = _bar_lines(columns, height, label_width, unit) if measured else [" " * label_width + " " + strip]
     first, last = (seconds(step.t_ns, drive_start_ns) for step in (steps[0], steps[-1]))
-    axis = " " * label + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
+    axis = " " * label_width + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
     return [*body, axis]
 
 
@@ -59,7 +59,7 @@ def _columns(steps: Sequence[Step], width: int) -> list[_Column]:
     ]
 
 
-def _bar_lines(columns: Sequence[_Column], height: int, label: int, unit: str) -> list[str]:
+def _bar_lines(columns: Sequence[_Column], height: int, label_width: int, unit: str) -> list[str]:
     known = [c.margin for c in columns if c.margin is not None]
     top, bottom = max(0.0, *known), min(0.0, *known)
     size = (top - bottom) / height or 1.0
@@ -73,7 +73,7 @@ def _bar_lines(columns: Sequence[_Column], height: int, label: int, unit: str) -
             cells = "┼" + "".join(
                 _UNKNOWN if c.unknown and not c.failed else "─" if c.has_step else " " for c in columns
             )
-        lines.append(f"{heads.get(row, ''):>{label}}{cells}")
+        lines.append(f"{heads.get(row, ''):>{label_width}}{cells}")
     return lines
 
 

@@ -135,7 +135,7 @@ class Sandbox:
                 [name, value, profile],
             )
         try:
-            self._derive_from_profiles()
+            self._derive_again_tables_that_read_profiles()
             judged = self.judge(params)
         finally:
             self.con.execute("DELETE FROM profile WHERE list_contains(?, profile)", [names])
@@ -160,7 +160,7 @@ class Sandbox:
         )
         return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in params_by_name}
 
-    def _derive_from_profiles(self) -> None:
+    def _derive_again_tables_that_read_profiles(self) -> None:
         """Derive again the tables that read the profiles, directly or through other tables."""
         stale: set[str] = set()
         for derivation in needed_derivations(self._rule.reads):

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
-def errors_with_default_samples(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
+def measurement_errors_with_default_number_of_copies(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
     """Return the errors with a number of copies: 10 for an unknown verdict, which small errors seldom decide, else 100."""
     return errors if errors.samples is not None else replace(errors, samples=10 if verdict == "unknown" else 100)
 
 
-def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
+def sensitivity_from_copies_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
     """Return the sensitivity from the copies that `check` judged; None if it judged none, or if other errors are requested."""
     if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
         return None

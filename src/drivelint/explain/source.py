@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 DATABASE_FILE = "drivelint.duckdb"
 
 
-def open_drive(
+def open_judged_drive_and_source_text(
     folder: Path,
     run_options: RunRequest,
     drive_id: str,
@@ -48,10 +48,10 @@ def open_drive(
             return _drive_from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
-    return _drive_from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
+    return _drive_and_source_text_from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
 
 
-def _drive_from_log(
+def _drive_and_source_text_from_log(
     run_options: RunRequest,
     drive_id: str,
     ego_id: str,

@@ -28,15 +28,17 @@ if TYPE_CHECKING:
 
     from drivelint.explain.model import Explanation, Row
 
-EXPLAIN_SCHEMA: Final = 1
+EXPLAIN_SCHEMA_VERSION: Final = 1
 """The version of the JSON, increased when a key changes its meaning or is removed."""
 PLOT_HEIGHT: Final = 8
-_CELLS_INDENT: Final = 4
+_TABLE_ROW_INDENT: Final = 4
 """The number of spaces before a row of a table."""
 _STYLE_BY_VERDICT: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
-_SMALL_NUMBER: Final = 0.1
-_GREAT_NUMBER: Final = 1e6
-_LONG_NUMBER: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
+_LEAST_NUMBER_SHOWN_WITH_TWO_DECIMALS: Final = 0.1
+_LEAST_NUMBER_SHOWN_WITH_SIX_DIGITS: Final = 1e6
+_NUMBER_WITH_MANY_DECIMALS_AND_UNIT: Final = re.compile(
+    r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))"
+)
 """A number with more than two decimals that a unit follows."""
 _JSON_KEY_BY_FIELD: Final = {"other_verdicts": "others", "description": "what", "nearest_value": "found"}
 """The keys in the JSON of fields with another name."""
@@ -55,7 +57,7 @@ _REASONS_NOT_TO_APPLY: Final = {
 
 def to_json(explanation: Explanation) -> str:
     """Return the explanation as JSON; a step is [t_ns, observed, required, margin, holds]."""
-    plain = {"explain_schema": EXPLAIN_SCHEMA, **_with_json_keys(asdict(explanation))}
+    plain = {"explain_schema": EXPLAIN_SCHEMA_VERSION, **_with_json_keys(asdict(explanation))}
     plain["series"] = [list(step) for step in explanation.series]
     plain["rows"] = [rows._asdict() for rows in explanation.rows]
     plain["parts"] = [_with_json_keys(part._asdict()) for part in explanation.parts]
@@ -79,7 +81,7 @@ def render(explanation: Explanation, width: int) -> Group:
         ("What would change it", prose["changes"]),
         (
             "Margin over time" if explanation.rule["sense"] != "holds" else "Over time",
-            _plot_and_key_lines(explanation, width),
+            _plot_and_legend_lines(explanation, width),
         ),
         ("Data on which it was judged", prose["rows"]),
         ("What the rule requires", prose["asks"]),
@@ -126,11 +128,11 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
         # a line break in a value must not begin a new sentence
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
         cells=lambda row, table: [
-            _cut_line(line, width - _CELLS_INDENT) for line in _lines_on_row(explanation, table, row)
+            _cut_line(line, width - _TABLE_ROW_INDENT) for line in _lines_on_row(explanation, table, row)
         ],
         at_least=_rounded_up,
         measure=_value_with_unit,
-        rounded=_rounded_sentence,
+        rounded=_sentence_with_rounded_numbers,
         seconds=lambda t_ns: seconds(t_ns, start_ns),
         value=_value_text,
     )
@@ -195,7 +197,7 @@ def _column_comment(text: str, value: Any) -> str:
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 
-def _plot_and_key_lines(explanation: Explanation, width: int) -> list[str]:
+def _plot_and_legend_lines(explanation: Explanation, width: int) -> list[str]:
     unit = one_line(explanation.rule["unit"] or "")
     lines = [
         f"|{line}"
@@ -239,18 +241,18 @@ def _rounded_text(value: float) -> str:
         return f"{value:g}"
     return (
         f"{value:.2g}"
-        if abs(value) < _SMALL_NUMBER
+        if abs(value) < _LEAST_NUMBER_SHOWN_WITH_TWO_DECIMALS
         else f"{value:.2f}"
-        if abs(value) < _GREAT_NUMBER
+        if abs(value) < _LEAST_NUMBER_SHOWN_WITH_SIX_DIGITS
         else f"{value:.6g}"
     )
 
 
 def _rounded_up(value: float) -> float:
     """Return the number rounded up to two decimals, so that a change by it is enough."""
-    return math.ceil(round(value * 100, 6)) / 100 if value >= _SMALL_NUMBER else value
+    return math.ceil(round(value * 100, 6)) / 100 if value >= _LEAST_NUMBER_SHOWN_WITH_TWO_DECIMALS else value
 
 
-def _rounded_sentence(text: str) -> str:
+def _sentence_with_rounded_numbers(text: str) -> str:
     """Return a sentence with its measured values rounded as in the other texts; the JSON is not rounded."""
-    return _LONG_NUMBER.sub(lambda match: _rounded_text(float(match[0])), text)
+    return _NUMBER_WITH_MANY_DECIMALS_AND_UNIT.sub(lambda match: _rounded_text(float(match[0])), text)

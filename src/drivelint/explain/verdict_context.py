@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.explain.sandbox import Judgement
     from drivelint.explain.target import Target
 
-SAME_REFERENCE_NS: Final = 2_000_000_000
+SAME_REFERENCE_POINT_TOLERANCE_NS: Final = 2_000_000_000
 """A reference point that moved by at most this time counts as the same reference point."""
 TRIED_CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """The margins around the explained interval with which parts of the drive are tried, in this order."""
@@ -76,7 +76,7 @@ def lacks_signal(row: Row) -> bool:
     return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 
 
-def sufficient_part(
+def shortest_part_with_same_verdict(
     context: VerdictContext, drive: Drive, sandbox: Sandbox, verdict: str, exit_stack: ExitStack
 ) -> tuple[Drive, tuple[int, int] | None, Sandbox]:
     """Return the shortest tried part of a drive with the same verdict, its interval (None: the whole drive), and a sandbox with it.
@@ -119,7 +119,7 @@ def _verdict_word_on_target(rule: Rule, target: Target, verdicts: list[Row], ste
     if span is None:
         return _worst_verdict(verdicts)
     if rule.kind != "invariant":
-        return _worst_verdict(_verdicts_at_reference(target, verdicts))
+        return _worst_verdict(_verdicts_at_nearest_reference_point(target, verdicts))
     within = [row["holds"] for row in steps if span[0] <= row["t_ns"] <= span[1]]
     if any(holds is False for holds in within):
         return "fail"
@@ -130,14 +130,19 @@ def _verdict_word_on_target(rule: Rule, target: Target, verdicts: list[Row], ste
     return "pass" if within else "not_applicable"
 
 
-def _verdicts_at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
-    """Return the verdicts at the reference point nearest to the target's; [] if it is more than `SAME_REFERENCE_NS` away."""
+def _verdicts_at_nearest_reference_point(target: Target, verdicts: list[Row]) -> list[Row]:
+    """Return the verdicts at the reference point nearest to the target's.
+
+    [] if it is more than `SAME_REFERENCE_POINT_TOLERANCE_NS` away.
+    """
     t_ref = target.verdict_row["t_ref_ns"]
     if t_ref is None:
         return verdicts
     apart = {id(row): abs(row["t_ref_ns"] - t_ref) for row in verdicts if row["t_ref_ns"] is not None}
-    least = min(apart.values(), default=SAME_REFERENCE_NS + 1)
-    return [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_NS else []
+    least = min(apart.values(), default=SAME_REFERENCE_POINT_TOLERANCE_NS + 1)
+    return (
+        [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_POINT_TOLERANCE_NS else []
+    )
 
 
 def _worst_verdict(rows: list[Row]) -> str:

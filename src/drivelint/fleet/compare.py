@@ -15,10 +15,10 @@ from drivelint.sql.statements import statement
 if TYPE_CHECKING:
     import duckdb
 
-NEAR_S: Final = 1.0
-NEAR_M: Final = 5.0
-MARGIN_TOLERANCE: Final = 0.01
-INTERVAL_TOLERANCE_S: Final = 0.1
+MOST_TIME_BETWEEN_MATCHED_FINDINGS_S: Final = 1.0
+MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M: Final = 5.0
+UNCHANGED_MARGIN_TOLERANCE: Final = 0.01
+UNCHANGED_INTERVAL_TOLERANCE_S: Final = 0.1
 """Copies of the constants in `drivelint.gate`, which this package must not import. A test checks that they are equal."""
 CAUSES: Final = ("drive", "software", "rule", "parameters", "data", "map", "tool")
 """The possible causes of a difference between two audits. In order: only one audit has the drive; the tag `release`, the version of the
@@ -73,7 +73,10 @@ def compare(
         raise UsageError(
             "an audit was made by an earlier drivelint, which did not store when each actor was recorded: audit the drives again"
         )
-    numbers = {"near_s": f"{NEAR_S!r}", "near_m": f"{NEAR_M!r}"}
+    numbers = {
+        "near_s": f"{MOST_TIME_BETWEEN_MATCHED_FINDINGS_S!r}",
+        "near_m": f"{MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M!r}",
+    }
     con.execute(statement("fleet/same_drive", base=base, new=new))
     for side, of in (("base", base), ("new", new)):
         con.execute(statement("fleet/timed_finding", side=side, of=of))
@@ -82,7 +85,10 @@ def compare(
     con.execute(statement("fleet/part", **numbers))
     for side, other_side, of in (("base", "new", new), ("new", "base", base)):
         con.execute(statement("fleet/only", side=side, other_side=other_side, of=of, **numbers))
-    tolerances = {"margin_tolerance": f"{MARGIN_TOLERANCE!r}", "interval_tolerance_s": f"{INTERVAL_TOLERANCE_S!r}"}
+    tolerances = {
+        "margin_tolerance": f"{UNCHANGED_MARGIN_TOLERANCE!r}",
+        "interval_tolerance_s": f"{UNCHANGED_INTERVAL_TOLERANCE_S!r}",
+    }
     made = statement("fleet/difference", base=base, new=new, **tolerances)
     con.execute(made, {"base_tool": tools[0], "new_tool": tools[1]})
     rows = con.execute(statement("fleet/differences")).fetchall()

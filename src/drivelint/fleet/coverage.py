@@ -65,7 +65,7 @@ class Coverage:
     situations: tuple[SituationCoverage, ...]
     cannot_tell: Mapping[str, str]
 
-    def with_standing(self, standing: str) -> list[RuleCoverage]:
+    def rules_with_standing(self, standing: str) -> list[RuleCoverage]:
         """Return the rules with a standing, one of `STANDINGS`."""
         return [rule for rule in self.rules if rule.standing == standing]
 

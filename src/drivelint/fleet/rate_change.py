@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.fleet.intervals import holm_corrected
-from drivelint.fleet.rates import OTHER_PREFIX, rates
+from drivelint.fleet.rates import OTHER_AUDIT_VIEW_PREFIX, rates
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -94,7 +94,7 @@ def _rate_test(per: str, sides: list[tuple[int, float, Estimate]], p_value: floa
 
 
 def compare_rates(
-    con: duckdb.DuckDBPyConnection, by: str | None = None, *, base: str = "", new: str = OTHER_PREFIX
+    con: duckdb.DuckDBPyConnection, by: str | None = None, *, base: str = "", new: str = OTHER_AUDIT_VIEW_PREFIX
 ) -> list[RateChange]:
     """Return, for each rule, profile and value of a tag, whether its rate differs between two audits.
 
@@ -121,7 +121,7 @@ def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
         for per, found in (("km", _p_value_per_km(*sides)), ("occasion", _p_value_per_occasion(*sides))):
             if found is not None:
                 values[name, per] = found
-    able = [key for key in values if _can_differ(had[key[0]], has[key[0]], key[1])]
+    able = [key for key in values if _has_any_event(had[key[0]], has[key[0]], key[1])]
     corrected = dict(zip(able, holm_corrected([values[key] for key in able]), strict=True))
     return [
         RateChange(
@@ -137,7 +137,7 @@ def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
     ]
 
 
-def _can_differ(base: Rate, new: Rate, per: str) -> bool:
+def _has_any_event(base: Rate, new: Rate, per: str) -> bool:
     return bool(base.findings + new.findings if per == "km" else base.occasions_failed + new.occasions_failed)
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.intervals import Estimate
 
-OTHER_PREFIX: Final = "other_"
+OTHER_AUDIT_VIEW_PREFIX: Final = "other_"
 """The prefix of the second audit's views."""
 
 

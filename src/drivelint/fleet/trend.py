@@ -85,11 +85,11 @@ def trend_p_value(events: Sequence[int], exposures: Sequence[float]) -> float:
         return 1.0
     if n > MAX_EXACT_EVENTS:
         return _normal_p_value(observed, n, shares)
-    chances = _chances_of_step_sums(shares, n)
+    chances = _probability_of_each_sum_of_event_steps(shares, n)
     return float(min(1.0, chances[chances <= chances[observed] * _EQUAL_CHANCE_FACTOR].sum()))
 
 
-def _chances_of_step_sums(shares: Floats, n_events: int) -> Floats:
+def _probability_of_each_sum_of_event_steps(shares: Floats, n_events: int) -> Floats:
     """Return the chance of each sum of the steps of `n_events` events: that power of the polynomial of the shares."""
     power, chances = shares, np.ones(1)
     while n_events:

@@ -31,7 +31,7 @@ BASE_PREFIX: Final = "base_"
 """The prefix of the earlier audit's views; the views of the other audit have no prefix."""
 
 
-_ALL_LOGS_PREFIX: Final = "whole_"
+_ALL_LOGS_VIEW_PREFIX: Final = "whole_"
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.Duc
 
 
 @contextmanager
-def open_audit_without_logs(
+def open_audit_leaving_out_logs(
     dest: str, sha256s: Sequence[str]
 ) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, int]]:
     """Open an audit without the logs that have one of these hashes; also yield how many of its drives are left out.
@@ -101,15 +101,19 @@ def open_audit_without_logs(
     Errors: as `open_audits`.
     """
     with open_database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        audit = _open_audit(con, dest, Path(home) / "new", _ALL_LOGS_PREFIX)
+        audit = _open_audit(con, dest, Path(home) / "new", _ALL_LOGS_VIEW_PREFIX)
         con.register("left_out_log", pa.table({"sha256": pa.array(sha256s, pa.string())}))
         con.execute(
-            f"CREATE TEMP TABLE own_key AS SELECT key FROM {_ALL_LOGS_PREFIX}drives ANTI JOIN left_out_log USING (sha256)"
+            f"CREATE TEMP TABLE own_key AS SELECT key FROM {_ALL_LOGS_VIEW_PREFIX}drives ANTI JOIN left_out_log USING (sha256)"
         )
         for table in (*TABLES, "receipts"):
-            con.execute(f"CREATE TEMP VIEW {table} AS FROM {_ALL_LOGS_PREFIX}{table} SEMI JOIN own_key USING (key)")
-        con.execute(f"CREATE TEMP VIEW rules AS FROM {_ALL_LOGS_PREFIX}rules")
-        (n,) = con.execute(f"SELECT count(*) FROM {_ALL_LOGS_PREFIX}drives ANTI JOIN own_key USING (key)").fetchall()[0]
+            con.execute(
+                f"CREATE TEMP VIEW {table} AS FROM {_ALL_LOGS_VIEW_PREFIX}{table} SEMI JOIN own_key USING (key)"
+            )
+        con.execute(f"CREATE TEMP VIEW rules AS FROM {_ALL_LOGS_VIEW_PREFIX}rules")
+        (n,) = con.execute(
+            f"SELECT count(*) FROM {_ALL_LOGS_VIEW_PREFIX}drives ANTI JOIN own_key USING (key)"
+        ).fetchall()[0]
         yield con, audit, n
 
 

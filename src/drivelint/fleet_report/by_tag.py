@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.figures import LogarithmicAxis
 
 MAX_TAG_VALUES: Final = 12
-MAX_RULES: Final = 12
-_SHOWN_PREFIX: Final = "shown_"
+MAX_SHOWN_RULES: Final = 12
+_SHOWN_DRIVES_VIEW_PREFIX: Final = "shown_"
 
 
 class RuleRatesByTag(NamedTuple):
@@ -59,10 +59,10 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
             con.execute(statement("fleet_report/tag_drives", value=tag_or_situation_sql(tag)), parameters_of_tag(tag))
             for table in ("drives", "verdicts", "findings"):
                 con.execute(
-                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
+                    f"CREATE OR REPLACE TEMP VIEW {_SHOWN_DRIVES_VIEW_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"
                 )
-            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}rules AS FROM rules")
-            of = _SHOWN_PREFIX
+            con.execute(f"CREATE OR REPLACE TEMP VIEW {_SHOWN_DRIVES_VIEW_PREFIX}rules AS FROM rules")
+            of = _SHOWN_DRIVES_VIEW_PREFIX
     by_rule: dict[tuple[str, str | None], list[Rate]] = {}
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
@@ -77,11 +77,11 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
             each.profile or "",
         ),
     )
-    left = found[MAX_RULES:]
+    left = found[MAX_SHOWN_RULES:]
     return RatesByTag(
         tag,
-        found[:MAX_RULES],
-        logarithmic_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
+        found[:MAX_SHOWN_RULES],
+        logarithmic_axis(rate.per_100km for each in found[:MAX_SHOWN_RULES] for rate in each.rates),
         max(0, n_values - MAX_TAG_VALUES),
         len(left),
         sum(map(_n_findings, left)),

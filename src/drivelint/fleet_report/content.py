@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
     from drivelint.fleet_report.rows import Row
 
-MAX_DRIVES: Final = 50
+MAX_DRIVES_PER_TABLE: Final = 50
 """Largest number of drives in a table."""
 MAX_FINDINGS_PER_STANDING: Final = 50
 """Largest number of findings per standing (new, fixed, …) in the comparison with a baseline."""
@@ -138,7 +138,7 @@ def fleet_content(
     worst = query_rows(
         con,
         "worst",
-        {"most": MAX_DRIVES},
+        {"most": MAX_DRIVES_PER_TABLE},
         least_share=share,
         ranked=ranked_drives_sql(),
         event=event,
@@ -164,7 +164,7 @@ def fleet_content(
         n_drives_with_findings=with_findings["drives"],
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
-        not_judged=query_rows(con, "not_judged", {"most": MAX_DRIVES}),
+        not_judged=query_rows(con, "not_judged", {"most": MAX_DRIVES_PER_TABLE}),
         lossy=logs_with_flag(con, "lossy"),
         off_map=logs_with_flag(con, "off_map"),
         worst_value=worst_tag_value(con, found),

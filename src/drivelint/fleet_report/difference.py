@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import duckdb
 
 from drivelint.errors import UsageError
-from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
+from drivelint.fleet.compare import UNCHANGED_INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE_PREFIX
-from drivelint.fleet_report.rows import counted_finding_ids_sql, query_rows
+from drivelint.fleet_report.rows import counted_finding_of_each_finding_sql, query_rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS, rows_and_findings_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
@@ -203,7 +203,7 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
     """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE_PREFIX), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
-    counted = {f"{side}_counted": counted_finding_ids_sql(of) for side, of in sides.items()}
+    counted = {f"{side}_counted": counted_finding_of_each_finding_sql(of) for side, of in sides.items()}
     (gating,) = query_rows(con, "gating", None, **sides, **counted)
     only = [query_rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
@@ -293,7 +293,7 @@ def _change_or_reason(row: Row) -> str:
     if row["margin"] != row["base_margin"]:
         notes.append(f"margin {number(row['margin'], row['unit'])}, was {number(row['base_margin'], row['unit'])}")
     ends = [abs(row[name] - row[f"base_{name}"]) for name in ("from_s", "to_s")]
-    if max(ends) > INTERVAL_TOLERANCE_S:
+    if max(ends) > UNCHANGED_INTERVAL_TOLERANCE_S:
         now, was = (f"{row[f'{of}from_s']:.2f} s to {row[f'{of}to_s']:.2f} s" for of in ("", "base_"))
         notes.append(f"{now}, was {was}")
     return "; ".join(notes)

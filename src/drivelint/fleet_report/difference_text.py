@@ -9,7 +9,7 @@ import msgspec
 
 from drivelint.errors import ExitCode
 from drivelint.fleet_report.difference import NOTHING_IN_COMMON
-from drivelint.fleet_report.figures import figure, percent_with_interval, rate_with_interval
+from drivelint.fleet_report.figures import number_text, percent_with_interval, rate_with_interval
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import escape_markdown, markdown_code
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.trend import Trend
     from drivelint.fleet_report.difference import AuditDifference
 
-AUDIT_DIFF_SCHEMA: Final = 1
+AUDIT_DIFF_SCHEMA_VERSION: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 _MAX_LISTED_RATES: Final = 3
 """A sentence lists at most this many rates that have risen."""
@@ -133,12 +133,12 @@ def rate_line(change_and_test: tuple[RateChange, RateTest]) -> str:
     change, test = change_and_test
     was, now = both_rate_texts(test)
     name = f"{rate_name(change)} per {test.per}"
-    return f"{name}: {was}, now {now}: {ratio_text(test)}, p {figure(test.p_value)}, corrected {figure(test.corrected)}"
+    return f"{name}: {was}, now {now}: {ratio_text(test)}, p {number_text(test.p_value)}, corrected {number_text(test.corrected)}"
 
 
 def ratio_text(test: RateTest) -> str:
     """Return the ratio of the later rate to the earlier one as text."""
-    return "none before" if test.ratio == math.inf else f"{figure(test.ratio)} times"
+    return "none before" if test.ratio == math.inf else f"{number_text(test.ratio)} times"
 
 
 def both_rate_texts(test: RateTest) -> list[str]:
@@ -176,7 +176,7 @@ def _text_on_one_line(value: Any) -> Any:
 def to_json(difference: AuditDifference, fail_on: str | None) -> str:
     """Return a difference as JSON: all counts, the first entries of each standing, and how many entries are left out."""
     content = {
-        "audit_diff_schema": AUDIT_DIFF_SCHEMA,
+        "audit_diff_schema": AUDIT_DIFF_SCHEMA_VERSION,
         "exit": {
             "code": int(exit_code(difference, fail_on)),
             "why": _exit_line(difference, fail_on).partition(": ")[2],

@@ -42,10 +42,10 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
     from drivelint.fleet_report.rows import Row
 
-FOLDER: Final = "drives"
-DEFAULT_N_DRIVES: Final = 100
+DRIVE_PAGES_FOLDER: Final = "drives"
+DEFAULT_N_DRIVE_PAGES: Final = 100
 """Default number of drives that get a page."""
-MAX_FINDINGS: Final = 200
+MAX_FINDINGS_PER_PAGE: Final = 200
 """Largest number of findings on a page."""
 MAX_REASONS_AND_NOTES: Final = 40
 """Largest number of reasons for unknown verdicts on a page, and of notes on the data."""
@@ -72,16 +72,16 @@ def page_name(drive_key: str) -> str:
         if _SHA256.fullmatch(drive_key)
         else hashlib.sha256(drive_key.encode("utf-8", "surrogatepass")).hexdigest()
     )
-    return f"{FOLDER}/{plain}.html"
+    return f"{DRIVE_PAGES_FOLDER}/{plain}.html"
 
 
 def is_page_name(name: str) -> bool:
     """Return whether a name is that of a drive's page, or of the page with its moments."""
     folder, _, file = name.rpartition("/")
-    return folder == FOLDER and _PAGE_FILE_NAME.fullmatch(file) is not None
+    return folder == DRIVE_PAGES_FOLDER and _PAGE_FILE_NAME.fullmatch(file) is not None
 
 
-def choose_drives(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
+def choose_drives_and_return_page_names(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
     """Choose the drives that get a page, and return the names of the pages. `fleet_content` must run before.
 
     `max_drives`: the number of drives with findings, the worst first; None: all drives of the audit.
@@ -112,11 +112,11 @@ def pages(
         statement(
             "fleet_report/page_findings", gravest_first=severity_order_sql(), event=finding_per_event_sql("paged_")
         ),
-        {"most": MAX_FINDINGS},
+        {"most": MAX_FINDINGS_PER_PAGE},
     )
     con.execute(statement("fleet_report/page_verdicts"))
     (n_pages,) = con.execute("SELECT count(*) FROM page_drive").fetchone() or (0,)
-    template = _environment().get_template("drive.html.j2")
+    template = _template_environment().get_template("drive.html.j2")
     same = {
         "audit": audit,
         "titles": {rule_id: rule["title"] for rule_id, rule in rules.items()},
@@ -153,7 +153,7 @@ def _page_content(
     counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in verdict_counts}
     by_severity = {name: findings[0][f"n_{name}"] if findings else 0 for name in SEVERITIES}
     n_rows, n_findings = findings[0]["n_rows"] if findings else 0, sum(by_severity.values())
-    home = f"{FOLDER}/{drive['drive_id']}"
+    home = f"{DRIVE_PAGES_FOLDER}/{drive['drive_id']}"
     worst = [findings[0]["finding_id"]] if findings else []
     return {
         "drive": drive | {"tags": sorted(drive["tags"] or ()), "utc": utc_at(drive["t_start_ns"], drive)},
@@ -188,13 +188,13 @@ def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, i
 
 
 @cache
-def _environment() -> Environment:
+def _template_environment() -> Environment:
     environment = page_environment(
         ("tables.js",),
         _HERE / "templates",
         ("fleet.css", "drive.css"),
         base_styles=("report.css", "narrow.css", "first.css"),
     )
-    environment.filters |= {"ego_name": ego_name, "figure": figures.figure, "plural": plural}
+    environment.filters |= {"ego_name": ego_name, "figure": figures.number_text, "plural": plural}
     environment.globals |= {"what_is_null": DEFAULT_REMEDY, "anchor": anchor}
     return environment

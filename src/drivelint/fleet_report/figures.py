@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.rates import Rate
 
 
-def figure(value: float | None) -> str:
+def number_text(value: float | None) -> str:
     """Return a number with three significant digits; a dash for None."""
     if value is None:
         return NO_VALUE
@@ -31,7 +31,7 @@ def rate_with_interval(estimate: Estimate) -> str:
     """Return a rate with the bounds of its interval as text; a dash if the rate is not known."""
     if estimate.rate is None:
         return NO_VALUE
-    return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
+    return f"{number_text(estimate.rate)} ({number_text(estimate.low)} to {number_text(estimate.high)})"
 
 
 def lower_bound_instead_of_zero(rate: Rate) -> tuple[str, str] | None:
@@ -43,7 +43,7 @@ def lower_bound_instead_of_zero(rate: Rate) -> tuple[str, str] | None:
     if rate.findings or not rate.findings_of_unknown or not rate.at_least_per_100km:
         return None
     return (
-        f"at least {figure(rate.at_least_per_100km)}",
+        f"at least {number_text(rate.at_least_per_100km)}",
         f"over all km; fully judged: {rate_with_interval(rate.per_100km)}",
     )
 
@@ -52,7 +52,7 @@ def percent_with_interval(estimate: Estimate) -> str:
     """Return a share and its interval in percent as text; a dash if the share is not known."""
     if estimate.rate is None:
         return NO_VALUE
-    return f"{figure(100 * estimate.rate)} % ({figure(100 * estimate.low)} to {figure(100 * estimate.high)})"
+    return f"{number_text(100 * estimate.rate)} % ({number_text(100 * estimate.low)} to {number_text(100 * estimate.high)})"
 
 
 class LogarithmicAxis(NamedTuple):

@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
     from drivelint.result.model import Result
 
-DEFAULT_N_DRIVES: Final = 3
+DEFAULT_N_DRIVES_WITH_MOMENTS: Final = 3
 """Number of drives whose moments are drawn by default."""
-DEFAULT_MAX_STATES: Final = 200_000
+DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS: Final = 200_000
 """By default, drives with more actor states are left out: to judge them again takes longer than a person waits for a page."""
-_SETTING_NAMES: Final = ("rules", "ignore", "profiles", "params", "rules_dirs")
+_AUDIT_SETTINGS_FOR_NEW_CHECK: Final = ("rules", "ignore", "profiles", "params", "rules_dirs")
 
 
 class MomentsPage(NamedTuple):
@@ -47,11 +47,15 @@ class MomentsPage(NamedTuple):
 
 
 def worst_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
-    """Return the worst drives that have a page and findings, after `drive_pages.choose_drives`.
+    """Return the worst drives that have a page and findings, after `drive_pages.choose_drives_and_return_page_names`.
 
-    `n`: number of drives; None: `DEFAULT_N_DRIVES`, without drives of more than `DEFAULT_MAX_STATES` states.
+    `n`: number of drives; None: `DEFAULT_N_DRIVES_WITH_MOMENTS`, without drives of more than
+    `DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS` states.
     """
-    bound = {"most": DEFAULT_N_DRIVES if n is None else n, "most_states": DEFAULT_MAX_STATES if n is None else None}
+    bound = {
+        "most": DEFAULT_N_DRIVES_WITH_MOMENTS if n is None else n,
+        "most_states": DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS if n is None else None,
+    }
     return query_rows(con, "moment_drives", bound, options=options_column_sql(con))
 
 
@@ -85,7 +89,9 @@ def _check_again(drive: Row, audit: Audit) -> Result:
     if not Path(drive["log"]).exists():
         raise DriveLintError(f"the log is not at {drive['log']} any more")
     options = msgspec.json.decode(drive["options"] or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value))
-    rules, ignore, profiles, params, rules_dirs = (tuple(audit.settings.get(name, ())) for name in _SETTING_NAMES)
+    rules, ignore, profiles, params, rules_dirs = (
+        tuple(audit.settings.get(name, ())) for name in _AUDIT_SETTINGS_FOR_NEW_CHECK
+    )
     request = run.CheckOptions(
         (drive["log"],),
         **{name: getattr(options, name) for name in options.__dataclass_fields__},

@@ -13,7 +13,7 @@ from drivelint.fleet_report import drive_pages, figures, moment_pages, page_file
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.fleet_report.content import FleetContent, fleet_content
 from drivelint.fleet_report.difference_text import both_rate_texts, changes_sentence, rate_line, rate_name, ratio_text
-from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVES
+from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVE_PAGES
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
 from drivelint.reasons.signals import DEFAULT_REMEDY, how_to_provide, remedy
@@ -53,7 +53,7 @@ def write_fleet_page(
     tags: Sequence[str],
     baseline: str | None,
     *,
-    most_drives: int | None = DEFAULT_N_DRIVES,
+    most_drives: int | None = DEFAULT_N_DRIVE_PAGES,
     most_moments: int | None = None,
     progress: Progress | None = None,
 ) -> tuple[str, Audit]:
@@ -81,9 +81,9 @@ def _write_html(
 ) -> None:
     """Write the moments and pages of drives, then the fleet page that links to them."""
     results = fleet.audit.results
-    names = drive_pages.choose_drives(con, most_drives)
+    names = drive_pages.choose_drives_and_return_page_names(con, most_drives)
     drives = moment_pages.worst_drives(con, most_moments)
-    with page_files.maintain_page_list(
+    with page_files.list_pages_and_remove_earlier_ones(
         results, [*names, *(moment_pages.moments_page_name(drive["key"]) for drive in drives)]
     ) as written:
         links: dict[str, drive_pages.MomentsLink] = {}
@@ -100,7 +100,7 @@ def _write_html(
 
 def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
     """Return the page as HTML in UTF-8. The same audit gives the same bytes. `links`: key of a drive -> relative URL of its page."""
-    text = _environment().get_template("fleet.html.j2").render(_template_values(fleet), links=links)
+    text = _template_environment().get_template("fleet.html.j2").render(_template_values(fleet), links=links)
     return text.encode("utf-8", "replace")
 
 
@@ -120,7 +120,7 @@ def _template_values(fleet: FleetContent) -> dict[str, Any]:
         "severities": SEVERITIES,
         "stored": any(is_url(row["log"]) for row in fleet.worst),
         "verdicts": VERDICTS,
-        "standings": [(title, fleet.coverage.with_standing(name)) for name, title in _STANDING_TITLES.items()],
+        "standings": [(title, fleet.coverage.rules_with_standing(name)) for name, title in _STANDING_TITLES.items()],
         "diff_titles": DIFF_STATUS_TITLES,
         "titles": {rule_id: rule["title"] for rule_id, rule in fleet.rules.items()},
         "breach_titles": {rule_id: breach_title(rule) for rule_id, rule in fleet.rules.items()},
@@ -132,7 +132,7 @@ def _note_beside_rate(rate: Rate) -> str:
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
-    return f", at least {figures.figure(least)} over all km" if least else ", no lower bound over all km"
+    return f", at least {figures.number_text(least)} over all km" if least else ", no lower bound over all km"
 
 
 def _advice_on_signal(missing_signal: MissingSignal) -> str:
@@ -153,7 +153,7 @@ def _remedy_with_example(undecided: UndecidedReason) -> str:
 
 
 _FILTERS: Final[dict[str, Any]] = {
-    "figure": figures.figure,
+    "figure": figures.number_text,
     "least_rate": figures.lower_bound_instead_of_zero,
     "interval": figures.rate_with_interval,
     "share": figures.percent_with_interval,
@@ -171,7 +171,7 @@ _FILTERS: Final[dict[str, Any]] = {
 
 
 @cache
-def _environment() -> Environment:
+def _template_environment() -> Environment:
     environment = page_environment(("tables.js", "report.js"), _HERE / "templates", ("fleet.css",))
     environment.filters |= _FILTERS
     return environment

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
-from drivelint.fleet_report.drive_pages import FOLDER, is_page_name
+from drivelint.fleet_report.drive_pages import DRIVE_PAGES_FOLDER, is_page_name
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from drivelint.audit.store import ResultStore
 
-LIST_FILE: Final = f"{FOLDER}/pages.json"
+LIST_FILE: Final = f"{DRIVE_PAGES_FOLDER}/pages.json"
 _JSON_KEY: Final = "written_by_drivelint"
 
 
 @contextmanager
-def maintain_page_list(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
+def list_pages_and_remove_earlier_ones(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
     """List the pages in `pages.json`; after the block, remove the pages of an earlier report that are not among `names`.
 
     Yields the set of the names: a caller that does not write one of the pages discards its name. During the block, the list also has the

@@ -12,14 +12,14 @@ from drivelint.sql.statements import statement
 if TYPE_CHECKING:
     import duckdb
 
-MAX_MARKS: Final = 3_000
-MAX_PLACES: Final = 20
-_WIDTH_PX: Final = 900
-_MAX_HEIGHT_PX: Final = 620
-_CELL_PX: Final = 6
+MAX_MARKS_ON_MAP: Final = 3_000
+MAX_LISTED_PLACES: Final = 20
+_MAP_WIDTH_PX: Final = 900
+_MAX_MAP_HEIGHT_PX: Final = 620
+_MAP_CELL_PX: Final = 6
 _M_PER_DEGREE: Final = 111_320.0
 """Metres per degree of longitude at the equator (WGS 84); also used for latitude."""
-_MIN_EXTENT_DEGREES: Final = 0.002
+_MIN_MAP_EXTENT_DEGREES: Final = 0.002
 
 
 @dataclass(frozen=True)
@@ -48,21 +48,21 @@ def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
     if not about["placed"]:
         return None
     stretch = math.cos(math.radians((about["south"] + about["north"]) / 2))
-    across = max((about["east"] - about["west"]) * stretch, _MIN_EXTENT_DEGREES)
-    down = max(about["north"] - about["south"], _MIN_EXTENT_DEGREES)
-    px = min((_WIDTH_PX - 2 * _CELL_PX) / across, (_MAX_HEIGHT_PX - 2 * _CELL_PX) / down)  # per degree
-    cell = _CELL_PX / px
-    bound = {"west": about["west"], "north": about["north"], "stretch": stretch, "cell": cell, "most": MAX_MARKS}
+    across = max((about["east"] - about["west"]) * stretch, _MIN_MAP_EXTENT_DEGREES)
+    down = max(about["north"] - about["south"], _MIN_MAP_EXTENT_DEGREES)
+    px = min((_MAP_WIDTH_PX - 2 * _MAP_CELL_PX) / across, (_MAX_MAP_HEIGHT_PX - 2 * _MAP_CELL_PX) / down)  # per degree
+    cell = _MAP_CELL_PX / px
+    bound = {"west": about["west"], "north": about["north"], "stretch": stretch, "cell": cell, "most": MAX_MARKS_ON_MAP}
     found = con.execute(statement("fleet_report/marks"), bound).to_arrow_table().to_pylist()
     bar_m = round_step(_M_PER_DEGREE * across / 8)
     return FindingMap(
-        width=_WIDTH_PX,
-        height=math.ceil(down * px) + 4 * _CELL_PX,
+        width=_MAP_WIDTH_PX,
+        height=math.ceil(down * px) + 4 * _MAP_CELL_PX,
         marks=[_map_mark(row) for row in found],
         bar_px=svg_number(bar_m / _M_PER_DEGREE * px),
         bar_words=f"{bar_m / 1000:g} km" if bar_m >= 1000 else f"{bar_m:g} m",
         middle=f"{(about['south'] + about['north']) / 2:.4f}, {(about['west'] + about['east']) / 2:.4f}",
-        places=con.execute(statement("fleet_report/places"), {"most": MAX_PLACES}).to_arrow_table().to_pylist(),
+        places=con.execute(statement("fleet_report/places"), {"most": MAX_LISTED_PLACES}).to_arrow_table().to_pylist(),
         n_placed=about["placed"],
         n_findings=about["findings"],
         n_left_out=about["placed"] - sum(row["n"] for row in found),
@@ -70,8 +70,8 @@ def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
 
 
 def _map_mark(row: dict[str, Any]) -> dict[str, Any]:
-    x, y = ((row[name] + 1.5) * _CELL_PX for name in ("column_no", "row_no"))
-    radius = min(_CELL_PX * 2.0, 2.2 + 1.3 * math.log10(row["n"]))  # legible for one finding and for ten thousand
+    x, y = ((row[name] + 1.5) * _MAP_CELL_PX for name in ("column_no", "row_no"))
+    radius = min(_MAP_CELL_PX * 2.0, 2.2 + 1.3 * math.log10(row["n"]))  # legible for one finding and for ten thousand
     return {
         "kind": ("critical", "major", "minor")[row["rank"] - 1],
         "x": svg_number(x),

@@ -40,7 +40,7 @@ def finding_per_event_sql(view_prefix: str) -> str:
     return statement("fleet/event", of=view_prefix, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
 
 
-def counted_finding_ids_sql(view_prefix: str) -> str:
+def counted_finding_of_each_finding_sql(view_prefix: str) -> str:
     """Return the SELECT of the id of the finding that is counted for the event of each finding."""
     return statement(
         "fleet_report/counted_id", of=view_prefix, least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING)

@@ -11,9 +11,9 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.fleet.rates import rates
 from drivelint.fleet.trend import Trend, trends
-from drivelint.fleet_report.audit_views import open_audit_without_logs
+from drivelint.fleet_report.audit_views import open_audit_leaving_out_logs
 from drivelint.fleet_report.difference_text import rate_name
-from drivelint.fleet_report.figures import figure
+from drivelint.fleet_report.figures import number_text
 from drivelint.fleet_report.rows import finding_per_event_sql, query_rows
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import escape_markdown, markdown_code
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from drivelint.fleet.rates import Rate
 
-TREND_SCHEMA: Final = 1
+TREND_SCHEMA_VERSION: Final = 1
 """Version of the JSON: raised when a key changes its meaning or is removed."""
 
 
@@ -89,7 +89,7 @@ def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend
     rates_by_audit: list[list[Rate]] = []
     known: list[str] = []
     for dest in dests:
-        with open_audit_without_logs(dest, known) as (con, audit, n_left_out):
+        with open_audit_leaving_out_logs(dest, known) as (con, audit, n_left_out):
             if audit.warning:
                 warn(audit.warning)
             totals.append(_audit_totals(con, audit.name, n_left_out, audit.warning))
@@ -134,7 +134,7 @@ def rate_text(rate: Rate | None) -> str:
     if rate is None or rate.per_100km.rate is None:
         return NO_VALUE
     more = f"+{rate.findings_of_unknown}" if rate.findings_of_unknown else ""
-    return f"{figure(rate.per_100km.rate)} ({rate.findings}{more})"
+    return f"{number_text(rate.per_100km.rate)} ({rate.findings}{more})"
 
 
 def trend_text(trend: Trend) -> str:
@@ -142,13 +142,13 @@ def trend_text(trend: Trend) -> str:
     if trend.p_value is None or trend.corrected is None:
         return "no test"
     word = direction(trend) if trend.is_significant else "no trend"
-    return f"{word}, p {figure(trend.p_value)}, corrected {figure(trend.corrected)}"
+    return f"{word}, p {number_text(trend.p_value)}, corrected {number_text(trend.corrected)}"
 
 
 def to_text(trend: AuditTrend, *, markdown: bool = False) -> str:
     """Return a trend as text for a person, or as Markdown."""
     filters: dict[str, Any] = {
-        "figure": figure,
+        "figure": number_text,
         "rate_name": rate_name,
         "rate_text": rate_text,
         "trend_text": trend_text,
@@ -169,8 +169,8 @@ def _text_tables(trend: AuditTrend) -> dict[str, list[str]]:
             one_line(of.name),
             str(of.n_drives),
             str(of.n_judged),
-            figure(of.km),
-            figure(of.hours),
+            number_text(of.km),
+            number_text(of.hours),
             *map(str, of.findings.values()),
         ]
         for of in trend.audits
@@ -195,7 +195,7 @@ def _aligned_lines(cells: list[list[str]]) -> list[str]:
 def to_json(trend: AuditTrend) -> str:
     """Return a trend as JSON: the counts of each audit, and every rule with a finding, its rates and its test."""
     content = {
-        "trend_schema": TREND_SCHEMA,
+        "trend_schema": TREND_SCHEMA_VERSION,
         "exit": {"code": int(trend.exit_code), "why": trend.headline},
         "audits": [each._asdict() for each in trend.audits],
         "rules": [

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.what_if import FlipCount, FlippedVerdict
     from drivelint.fleet_report.audit_views import Audit
 
-WHAT_IF_SCHEMA: Final = 1
+WHAT_IF_SCHEMA_VERSION: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 MAX_TEXT_LINES: Final = 50
 """Largest number of tag values, and of verdicts, in the text; the JSON has all values."""
@@ -183,7 +183,7 @@ def to_json(analysis: AuditWhatIf) -> str:
     """Return the result as JSON."""
     answer = analysis.answer
     content: dict[str, Any] = {
-        "what_if_schema": WHAT_IF_SCHEMA,
+        "what_if_schema": WHAT_IF_SCHEMA_VERSION,
         "rule_id": answer.rule_id,
         "param": answer.param,
         "value": analysis.setting.partition("=")[2],

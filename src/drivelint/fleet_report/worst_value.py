@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from drivelint.fleet.intervals import Estimate
     from drivelint.fleet.rates import Rate
 
-MAX_TAGS: Final = 6
-MAX_RULES: Final = 6
-_COMPARED_PREFIX: Final = "compared_"
+MAX_COMPARED_TAGS: Final = 6
+MAX_COMPARED_RULES: Final = 6
+_COMPARED_RULES_VIEW_PREFIX: Final = "compared_"
 """The prefix of the views of the compared rules."""
 
 
@@ -71,7 +71,7 @@ def worst_tag_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -
     `all_rates`: the rates of all drives, the most severe first; the first rules with findings are compared. Only the highest rate of a tag
     and rule can be reported, but the correction counts each value, because each could be the highest by chance.
     """
-    ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
+    ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_COMPARED_RULES]
     all_tags = query_rows(con, "tags")
     compared_tags = [
         row["tag"]
@@ -80,17 +80,17 @@ def worst_tag_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -
     ]
     if not ids or not compared_tags:
         return None
-    tags = compared_tags[:MAX_TAGS]
+    tags = compared_tags[:MAX_COMPARED_TAGS]
     con.execute("CREATE OR REPLACE TEMP TABLE compared_rule AS SELECT unnest($ids::VARCHAR[]) AS rule_id", {"ids": ids})
     for table in ("verdicts", "findings", "rules"):
         con.execute(
-            f"CREATE OR REPLACE TEMP VIEW {_COMPARED_PREFIX}{table} AS FROM {table} SEMI JOIN compared_rule USING (rule_id)"
+            f"CREATE OR REPLACE TEMP VIEW {_COMPARED_RULES_VIEW_PREFIX}{table} AS FROM {table} SEMI JOIN compared_rule USING (rule_id)"
         )
-    con.execute(f"CREATE OR REPLACE TEMP VIEW {_COMPARED_PREFIX}drives AS FROM drives")
+    con.execute(f"CREATE OR REPLACE TEMP VIEW {_COMPARED_RULES_VIEW_PREFIX}drives AS FROM drives")
     compared, n_tests = [], 0
     for tag in tags:
         by_rule = attrgetter("rule_id", "profile")
-        for _, of in groupby(rates(con, tag, of=_COMPARED_PREFIX), by_rule):
+        for _, of in groupby(rates(con, tag, of=_COMPARED_RULES_VIEW_PREFIX), by_rule):
             tag_rates = [rate for rate in of if rate.tag_value is not None and rate.km > 0]
             if len(tag_rates) > 1 and any(rate.findings for rate in tag_rates):
                 n_tests += len(tag_rates)

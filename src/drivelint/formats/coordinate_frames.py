@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FIXED_FRAME_NAMES: Final = ("map", "world", "odom")
 """The names that the fixed frame may have, best first. By REP 105, `map` does not drift and `odom` does."""
-MAX_INTERPOLATION_NS: Final = 500_000_000
+MAX_INTERPOLATED_GAP_NS: Final = 500_000_000
 """Transforms further apart are not interpolated: in 0.5 s, a car at 20 m/s that turns at 0.5 rad/s deviates from the chord by 0.3 m."""
 
 
@@ -155,7 +155,7 @@ def _quaternion_products(a: Vectors, b: Vectors) -> Vectors:
 def _poses_at(transform: _Transform, t_ns: Times) -> Poses:
     """Interpolate a transform: places linearly, rotations along the shorter arc.
 
-    NaN outside its times and in gaps over `MAX_INTERPOLATION_NS`.
+    NaN outside its times and in gaps over `MAX_INTERPOLATED_GAP_NS`.
     """
     if transform.static:
         return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in transform.poses))
@@ -163,7 +163,9 @@ def _poses_at(transform: _Transform, t_ns: Times) -> Poses:
     exact = transform.t_ns[after] == t_ns
     before = np.where(exact, after, np.maximum(after - 1, 0))
     span = transform.t_ns[after] - transform.t_ns[before]
-    inside = exact | ((transform.t_ns[before] < t_ns) & (t_ns < transform.t_ns[after]) & (span <= MAX_INTERPOLATION_NS))
+    inside = exact | (
+        (transform.t_ns[before] < t_ns) & (t_ns < transform.t_ns[after]) & (span <= MAX_INTERPOLATED_GAP_NS)
+    )
     share = np.where(span > 0, (t_ns - transform.t_ns[before]) / np.maximum(span, 1), 0.0)[:, None]
     first, second = transform.poses.turn[before], transform.poses.turn[after]
     near = np.where((first * second).sum(axis=1, keepdims=True) < 0.0, -second, second)

@@ -128,7 +128,7 @@ def is_utf8(path: str) -> bool:
     return not re.search("[\ud800-\udfff]", path)
 
 
-def file_states(path: Path) -> list[tuple[str, int, int]]:
+def file_names_sizes_and_change_times(path: Path) -> list[tuple[str, int, int]]:
     """Return name, size and time of the last change of each file of a trace. Errors: `TraceError`."""
     try:
         return [(file.name, found.st_size, found.st_mtime_ns) for file in drive_files(path) for found in [file.stat()]]

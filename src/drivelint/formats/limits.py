@@ -29,8 +29,8 @@ the slowest readers for real files."""
 BASE_MEMORY_BYTES: Final = 2 << 30
 MEMORY_BYTES_PER_FILE_BYTE: Final = 64
 """The limit of memory in bytes is `BASE_MEMORY_BYTES` plus this per byte of the file."""
-_CHECK_PERIOD_S: Final = 0.1
-_PACKAGE: Final = Path(__file__).parents[1]
+_READING_LIMIT_CHECK_PERIOD_S: Final = 0.1
+_PACKAGE_FOLDER: Final = Path(__file__).parents[1]
 
 
 def memory_limit_bytes(n_bytes: int) -> int:
@@ -67,7 +67,7 @@ class _ReadingWatch:
         _raise_pending_interrupt()
 
     def _watch_until_end(self) -> None:
-        while not self._over.wait(_CHECK_PERIOD_S):
+        while not self._over.wait(_READING_LIMIT_CHECK_PERIOD_S):
             if self._work.seconds() > self.seconds:
                 excess = f"more than {self.seconds:.0f} s of computing"
             elif resident_bytes() - self._before > self.bytes:
@@ -100,7 +100,9 @@ def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, erro
     except _LimitExceededError as error:
         files = [Path(each.filename) for each in traceback.extract_tb(error.__traceback__)]
         inner = [
-            file.relative_to(_PACKAGE) for file in files if file.is_relative_to(_PACKAGE) and file != Path(__file__)
+            file.relative_to(_PACKAGE_FOLDER)
+            for file in files
+            if file.is_relative_to(_PACKAGE_FOLDER) and file != Path(__file__)
         ]
         place = inner[-1].with_suffix("").as_posix() if inner else "the end"
         raise error_class(

@@ -109,13 +109,13 @@ def load_map(
             raise MapError(
                 f"map {source.name}: {error}, more than in any road network: give a map without duplicates"
             ) from None
-        _refuse_too_large_ground(source, tables)
+        _refuse_too_many_grid_squares(source, tables)
         return tables
 
     return read_within_limits(read, f"map {source.name}", len(source.content), MapError)
 
 
-def _refuse_too_large_ground(source: MapSource, tables: MapTables) -> None:
+def _refuse_too_many_grid_squares(source: MapSource, tables: MapTables) -> None:
     """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
     squares, most = (
         approximate_square_count(tables.tables["lane_point"]),

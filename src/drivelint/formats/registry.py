@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
-from drivelint.formats.files import file_states, identify
+from drivelint.formats.files import file_names_sizes_and_change_times, identify
 from drivelint.formats.folders import is_drive_folder
 from drivelint.formats.limits import read_within_limits
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
@@ -70,7 +70,7 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     if options.sensor_range_m is not None and not options.sensor_range_m > 0.0:
         raise UsageError(f"--sensor-range {options.sensor_range_m}: the range must be more than 0 m")
     probe = _probe(path, options)
-    before = file_states(path)
+    before = file_names_sizes_and_change_times(path)
     n_bytes = sum(size for _, size, _ in before)
     return read_within_limits(lambda: _read_unchanged_log(probe, before), str(path), n_bytes, TraceError)
 
@@ -81,7 +81,7 @@ def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Tra
     identity = identify(path)
     if reader := next((each for each in readers() if each.accepts(probe)), None):
         recording = reader.read(probe)
-        if file_states(path) != before:  # the hash may be that of other content
+        if file_names_sizes_and_change_times(path) != before:  # the hash may be that of other content
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
         if "osi-mcap" not in reader.formats and not probe.head.startswith(FIRST_BYTES_BY_SUFFIX[".mcap"]):
             recording.findings.append(UNPROTECTED_FINDING)

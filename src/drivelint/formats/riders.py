@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask, Times
 
-MAX_OUTSIDE_BOX_M: Final = 0.5
+MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M: Final = 0.5
 """How far the centre of a rider may lie outside the ridden vehicle's box: annotators draw both boxes from few lidar points."""
-MAX_HEIGHT_DIFFERENCE_M: Final = 2.0
+MAX_HEIGHT_BETWEEN_RIDER_AND_VEHICLE_M: Final = 2.0
 """The largest difference in height between the centres of a rider and the ridden vehicle."""
 _SIZE_COLUMNS: Final = ("length_m", "width_m", "height_m")
 
 
-def join_riders(
+def join_riders_and_return_merged_rows_and_rider_tracks(
     t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
 ) -> tuple[Mask, list[int]]:
     """Give riders the box around them and their vehicle, in place. Return which rows another row's box includes, and the riders' tracks.
@@ -81,10 +81,15 @@ def _riders_and_vehicles(
 
 
 def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
-    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or within `MAX_OUTSIDE_BOX_M` beside it."""
+    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or just beside it.
+
+    Just beside: within `MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M`.
+    """
     dx, dy = _relative_position(on, under, boxes)
-    half_length, half_width = (boxes[name][under] / 2 + MAX_OUTSIDE_BOX_M for name in _SIZE_COLUMNS[:2])
-    level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= MAX_HEIGHT_DIFFERENCE_M
+    half_length, half_width = (
+        boxes[name][under] / 2 + MAX_RIDER_CENTRE_OUTSIDE_VEHICLE_BOX_M for name in _SIZE_COLUMNS[:2]
+    )
+    level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= MAX_HEIGHT_BETWEEN_RIDER_AND_VEHICLE_M
     return (np.abs(dx) <= half_length) & (np.abs(dy) <= half_width) & level
 
 

@@ -17,7 +17,7 @@ from drivelint import __version__
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 from drivelint.engine.robustness.copies import MeasurementErrors
-from drivelint.explain.source import open_drive, with_ego
+from drivelint.explain.source import open_judged_drive_and_source_text, with_ego
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
 from drivelint.incident.finding import contact_findings, named_finding, near_miss_with_closing_speed, near_misses
@@ -111,7 +111,7 @@ def judge_parties_again(request: IncidentRequest, run_options: RunRequest | None
     run_options = (run_options or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
     judge = Judge.of_run(run_options, result.rules, request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
-    drive, source = open_drive(
+    drive, source = open_judged_drive_and_source_text(
         request.folder,
         run_options,
         finding.row["drive_id"],
@@ -149,7 +149,7 @@ def _other_party_rows_or_reason(
         return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
     # the option --ego-size is about the ego of the run: with this option, read the log with that ego
     read_as = other if run_options.ego_size is None else finding.row["ego_id"]
-    drive, _ = open_drive(
+    drive, _ = open_judged_drive_and_source_text(
         request.folder,
         run_options,
         drive_id,

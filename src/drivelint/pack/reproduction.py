@@ -17,7 +17,7 @@ from drivelint.errors import UsageError
 from drivelint.evaluate.evaluation import Evaluation
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.evaluate.temp_tables import drop_tables
-from drivelint.explain.source import open_drive
+from drivelint.explain.source import open_judged_drive_and_source_text
 from drivelint.pack import finding_rows, finding_sql
 from drivelint.pack.bag import Problem
 from drivelint.report.progress import Silent
@@ -114,7 +114,9 @@ def evidence_of_findings(
     findings = result.findings.to_pylist()
     for (drive_id, ego_id), mine in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
         trace = Path(check_request.traces[drive_id])
-        drive, _ = open_drive(trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map)
+        drive, _ = open_judged_drive_and_source_text(
+            trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map
+        )
         found |= _evidence_of_drive(drive, mine, rules, check_request, memory)
     return found
 

@@ -11,7 +11,7 @@ import pytest
 from pyproj import Transformer
 
 from drivelint.errors import MapError
-from drivelint.formats.argoverse2.cities import ORIGINS, frame_of_city
+from drivelint.formats.argoverse2.cities import CITY_ORIGINS_IN_UTM, frame_of_city
 from tests.formats.argoverse2.argoverse_log import load, points, road, segment, straight
 from tests.formats.opendrive.xodr import checks, lanelets, rows
 from tests.formats.opendrive.xodr import points as lane_points
@@ -227,7 +227,7 @@ def test_a_city_s_origin_is_where_it_is_published(city: str) -> None:
     ((longitude, latitude),) = frame.longitude_latitude(np.zeros((1, 2))).tolist()
     assert (latitude, longitude) == pytest.approx(PUBLISHED[city], abs=2e-9)
     east, north = Transformer.from_crs("EPSG:4326", frame.reference, always_xy=True).transform(*PUBLISHED[city][::-1])
-    assert (east, north) == pytest.approx(ORIGINS[city][1:], abs=1e-3)
+    assert (east, north) == pytest.approx(CITY_ORIGINS_IN_UTM[city][1:], abs=1e-3)
 
 
 def test_the_city_is_in_the_name_of_the_file() -> None:

@@ -113,7 +113,7 @@ def test_the_reference_log(tmp_path: Path) -> None:
 
 
 def test_loose_messages_become_chunks_that_are_not_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("drivelint.formats.mcap.part_copy.LOOSE_CHUNK_BYTES", 500)
+    monkeypatch.setattr("drivelint.formats.mcap.part_copy.BYTES_PER_CHUNK_OF_LOOSE_MESSAGES", 500)
     path = log(tmp_path / "log.mcap", use_chunking=False)
     out = annotated(path)
     assert others(streaming(out)) == streaming(path)

@@ -12,7 +12,7 @@ from drivelint.road.geo_reference import GeoFrame
 
 NATION: Final = "us"
 """The country of all six cities."""
-ORIGINS: Final = {
+CITY_ORIGINS_IN_UTM: Final = {
     "ATX": (14, 621150.0275, 3349889.9996),  # Austin: 30.27464237939507, -97.7404457407424
     "DTW": (17, 320669.9346, 4685369.9988),  # Detroit: 42.29993066912924, -83.17555750783717
     "MIA": (17, 580560.0088, 2850959.9999),  # Miami: 25.77452579915163, -80.19656914449405
@@ -32,7 +32,7 @@ _CITY_IN_FILE_NAME: Final = re.compile(r"____([A-Z]{3})_city_")
 def frame_of_city(name: str) -> GeoFrame | None:
     """Return the coordinate frame of a city, given by its code or name; None if Argoverse does not have the city."""
     word = name.strip()
-    origin = ORIGINS.get(_CODE_BY_CITY_NAME.get(word.lower().replace("_", "-").replace(" ", "-"), word))
+    origin = CITY_ORIGINS_IN_UTM.get(_CODE_BY_CITY_NAME.get(word.lower().replace("_", "-").replace(" ", "-"), word))
     if origin is None:
         return None
     zone, x_m, y_m = origin

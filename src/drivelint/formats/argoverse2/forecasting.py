@@ -43,10 +43,10 @@ SENSOR_RANGE_M: Final = 50.0
 STEP_NS: Final = 100_000_000
 _MAP_FILE_PATTERN: Final = "log_map_archive_*.json"
 _TIME_COLUMN: Final = "timestep"
-_STATE_COLUMN_BY_COLUMN: Final = {
+_STATE_COLUMN_BY_FILE_COLUMN: Final = {
     "position_x": "x_m", "position_y": "y_m", "heading": "yaw_rad", "velocity_x": "vx_mps", "velocity_y": "vy_mps",
 }  # fmt: skip
-_REQUIRED_COLUMNS: Final = ("track_id", "object_type", _TIME_COLUMN, *_STATE_COLUMN_BY_COLUMN)
+_REQUIRED_COLUMNS: Final = ("track_id", "object_type", _TIME_COLUMN, *_STATE_COLUMN_BY_FILE_COLUMN)
 _CLOCK_COLUMNS: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
 
 
@@ -69,13 +69,13 @@ def read(probe: Probe) -> Recording:
     rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     ids = pc.dictionary_encode(cells.cast_column(path, rows, "track_id", pa.string()))
     classes, notes = class_codes(cells.cast_column(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
-    raw = cells.number_columns(path, rows, _STATE_COLUMN_BY_COLUMN)
+    raw = cells.number_columns(path, rows, _STATE_COLUMN_BY_FILE_COLUMN)
     odd = np.zeros(len(rows), np.bool_)
     numbers = {}
     for name, values in raw.items():
         wrong = ~np.isfinite(values)
         odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
-        numbers[_STATE_COLUMN_BY_COLUMN[name]] = np.where(wrong, np.nan, values)
+        numbers[_STATE_COLUMN_BY_FILE_COLUMN[name]] = np.where(wrong, np.nan, values)
     states = States(
         ids.dictionary.to_pylist(), ids.indices.to_numpy().astype(np.int32), t_ns, numbers,
         {"actor_class": classes}, odd,
@@ -145,7 +145,7 @@ def _move_ego_to_box_centre(states: States) -> None:
     numbers = states.numbers
     x, y, yaw = (numbers[name][ego_rows] for name in ("x_m", "y_m", "yaw_rad"))
     numbers["x_m"][ego_rows], numbers["y_m"][ego_rows] = vehicle.box_centres(x, y, yaw)
-    for name, size in zip(("length_m", "width_m", "height_m"), vehicle.BOX_SIZE_M, strict=True):
+    for name, size in zip(("length_m", "width_m", "height_m"), vehicle.EGO_BOX_SIZE_M, strict=True):
         numbers[name] = np.where(ego_rows, size, np.nan)
 
 

@@ -48,9 +48,9 @@ _COLOURS: Final = {"WHITE": "white", "YELLOW": "yellow", "BLUE": "blue"}
 _SIDES: Final = ("left", "right")
 _PARSE_ERRORS: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
 """The errors that reading an invalid part of the file raises."""
-_MIN_OVERLAP_M2: Final = 1.0
+_MIN_LANE_OVERLAP_IN_JUNCTION_M2: Final = 1.0
 """Lanes inside intersections that overlap by more than this area are in one junction."""
-_MAX_LEVEL_DIFFERENCE_M: Final = 3.0
+_MAX_HEIGHT_DIFFERENCE_WITHIN_LEVEL_M: Final = 3.0
 """Lanes whose heights differ by more are on different levels."""
 
 
@@ -88,7 +88,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         lane.z = (left + right) / 2
     _set_junctions(lanes, segments)
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", "rht")], quality)
-    walks = _crossing_lanes(archive.get("pedestrian_crossings", {}), quality)
+    walks = _crossings_as_lanes(archive.get("pedestrian_crossings", {}), quality)
     furniture = {"traffic_signal": [], "stop_line": [], "crossing": crossings(walks, lanes, request.offset, quality)}
     geo = frame_by_file_name(source.name)
     return map_from_bounds(
@@ -271,8 +271,8 @@ def _overlapping_lane_pairs(lanes: Sequence[BoundedLane]) -> list[list[str]]:
         a, b = lanes[i], lanes[j]
         apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
         if (
-            apart <= _MAX_LEVEL_DIFFERENCE_M
-            and shapely.area(shapely.intersection(areas[i], areas[j])) > _MIN_OVERLAP_M2
+            apart <= _MAX_HEIGHT_DIFFERENCE_WITHIN_LEVEL_M
+            and shapely.area(shapely.intersection(areas[i], areas[j])) > _MIN_LANE_OVERLAP_IN_JUNCTION_M2
         ):
             overlaps.append([a.lanelet_id, b.lanelet_id])
     return overlaps
@@ -282,7 +282,7 @@ def _have_heights(*lanes: BoundedLane) -> bool:
     return all(np.isfinite(lane.z).any() for lane in lanes)
 
 
-def _crossing_lanes(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
+def _crossings_as_lanes(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     """Return the pedestrian crossings as lanes for people on foot, bounded by the two edges."""
     crossings = []
     for key, crossing in records.items():

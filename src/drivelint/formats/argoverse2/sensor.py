@@ -32,7 +32,7 @@ from drivelint.formats.argoverse2.categories import (
 from drivelint.formats.argoverse2.cities import NATION, frame_by_file_name
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.folders import folder_kind
-from drivelint.formats.riders import join_riders
+from drivelint.formats.riders import join_riders_and_return_merged_rows_and_rider_tracks
 from drivelint.formats.tables import ipc
 from drivelint.phrases import name_list
 
@@ -148,7 +148,7 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     place, turn = (np.stack([raw[name] for name in names], axis=1) for names in (_PLACE_COLUMNS, _QUATERNION_COLUMNS))
     poses = rear_axle.compose(Poses(place, unit_quaternions(turn)))
     boxes = _pose_columns(poses) | {name: raw[name] for name in _SIZE_COLUMNS}
-    inside, riders = join_riders(
+    inside, riders = join_riders_and_return_merged_rows_and_rider_tracks(
         t_ns, actor, _is_one_of(category, RIDER_CATEGORIES), _is_one_of(category, RIDDEN_CATEGORIES), boxes
     )
     names = ids.dictionary.to_pylist()
@@ -174,7 +174,7 @@ def _pose_columns(poses: Poses) -> dict[str, Floats]:
 def _ego_states(steps: Times, poses: Poses, ids: list[str]) -> States:
     n = len(steps)
     numbers = _pose_columns(poses) | {
-        name: np.full(n, size) for name, size in zip(_SIZE_COLUMNS, vehicle.BOX_SIZE_M, strict=True)
+        name: np.full(n, size) for name, size in zip(_SIZE_COLUMNS, vehicle.EGO_BOX_SIZE_M, strict=True)
     }
     classes, _ = class_codes(pa.array([EGO_CATEGORY] * n), SENSOR_CLASSES)
     return States(ids, np.zeros(n, np.int32), steps, numbers, {"actor_class": classes}, np.zeros(n, np.bool_))

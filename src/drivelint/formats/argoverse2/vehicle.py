@@ -18,21 +18,21 @@ from drivelint.formats.coordinate_frames import Poses
 if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
-BOX_SIZE_M: Final = (4.869, 1.852 + 0.275, 1.476)
+EGO_BOX_SIZE_M: Final = (4.869, 1.852 + 0.275, 1.476)
 """Length, width (body plus mirrors) and height."""
-BOX_CENTRE_M: Final = (1.339, 0.0, 0.438)
+BOX_CENTRE_FROM_REAR_AXLE_M: Final = (1.339, 0.0, 0.438)
 """The centre of the box in the egovehicle frame."""
 
 
 def box_poses(rear_axle: Poses) -> Poses:
     """Return the poses of the vehicle's box for these poses of its egovehicle frame."""
     n = len(rear_axle.place)
-    return rear_axle.compose(Poses(np.tile(BOX_CENTRE_M, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
+    return rear_axle.compose(Poses(np.tile(BOX_CENTRE_FROM_REAR_AXLE_M, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
 
 
 def box_centres(x_m: Floats, y_m: Floats, yaw_rad: Floats) -> tuple[Floats, Floats]:
     """Return x and y of the box centre for these places and headings of the rear axle, on level ground."""
-    ahead = BOX_CENTRE_M[0]
+    ahead = BOX_CENTRE_FROM_REAR_AXLE_M[0]
     return x_m + ahead * np.cos(yaw_rad), y_m + ahead * np.sin(yaw_rad)
 
 

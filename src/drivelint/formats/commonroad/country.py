@@ -8,6 +8,6 @@ if TYPE_CHECKING:
     from lxml import etree
 
 
-def country_of(root: etree._Element) -> str:
+def country_in_scenario_name(root: etree._Element) -> str:
     """Return the three letters of the country in the scenario's name; ZAM stands for no country."""
     return (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()

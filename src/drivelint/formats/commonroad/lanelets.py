@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
-from drivelint.formats.commonroad.country import country_of
+from drivelint.formats.commonroad.country import country_in_scenario_name
 from drivelint.formats.commonroad.signs import (
     MapSigns,
     points,
@@ -67,7 +67,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables. Errors: `MapError` if the file is not XML, or no lanelet can be built."""
     root = safe_xml.parse_map(source)
     quality = MapQuality()
-    signs = read_signs(root, country_of(root), quality)
+    signs = read_signs(root, country_in_scenario_name(root), quality)
     built: list[BoundedLane] = []
     walks: list[BoundedLane] = []
     for element in root.findall("lanelet"):
@@ -79,13 +79,13 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
     signs.report_problems(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
     _report_unread_markings_and_types(root, quality)
-    _remove_road_types_against_tags(root, built, quality)
+    _remove_town_road_types_of_highway_scenario(root, built, quality)
     _set_junctions(root, built)
     lanes = build_lanes(built, request.offset, quality)
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    nation = nation_of(country_of(root))
+    nation = nation_of(country_in_scenario_name(root))
     by_country = None if nation is None else side_of_nation(nation)
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", by_country)], quality)
     try:
@@ -161,7 +161,9 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _remove_road_types_against_tags(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
+def _remove_town_road_types_of_highway_scenario(
+    root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality
+) -> None:
     """Remove the road type `urban` in a scenario with the tag `highway`: converters write this type for every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]

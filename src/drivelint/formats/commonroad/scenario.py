@@ -16,7 +16,7 @@ from drivelint.drive.box_centre import velocity_of_centre, yaw_rates
 from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
-from drivelint.formats.commonroad.country import country_of
+from drivelint.formats.commonroad.country import country_in_scenario_name
 from drivelint.formats.commonroad.lights import signal_states
 from drivelint.formats.commonroad.shapes import box_offsets, read_shape, shape_findings
 from drivelint.phrases import name_list
@@ -45,13 +45,15 @@ _PATH_BY_COLUMN = {
     "a": "acceleration/exact", "slip": "slipAngle/exact", "yaw_rate": "yawRate/exact", "step": "time/exact",
 }  # fmt: skip
 """Column -> path of its element in a state."""
-_ALL_STATES: Final = "(initialState | trajectory/state)"
-_COUNT_OF_INEXACT_VALUES: Final = f"count({_ALL_STATES}//intervalStart | {_ALL_STATES}/position/*[not(self::point)])"
+_ALL_STATES_XPATH: Final = "(initialState | trajectory/state)"
+_COUNT_OF_INEXACT_VALUES_XPATH: Final = (
+    f"count({_ALL_STATES_XPATH}//intervalStart | {_ALL_STATES_XPATH}/position/*[not(self::point)])"
+)
 _ROOT_TAG: Final = b"<commonRoad"
-_OBSTACLE: Final = re.compile(rb"<(dynamicO|staticO|o)bstacle[\s>]")
+_OBSTACLE_START_TAG: Final = re.compile(rb"<(dynamicO|staticO|o)bstacle[\s>]")
 _TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
 _STATE: Final = re.compile(rb"<state>.*?</state>", re.DOTALL)
-_COMMENT: Final = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_COMMENT_OR_CDATA: Final = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 _TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 
@@ -62,7 +64,7 @@ def accepts(probe: Probe) -> bool:
 
 def has_obstacles(path: Path, head: bytes) -> bool:
     """Return whether the file is a scenario with obstacles, not only a map."""
-    return _ROOT_TAG in head and _OBSTACLE.search(path.read_bytes()) is not None
+    return _ROOT_TAG in head and _OBSTACLE_START_TAG.search(path.read_bytes()) is not None
 
 
 def read(probe: Probe) -> Recording:
@@ -114,7 +116,7 @@ def read(probe: Probe) -> Recording:
         states, columns["yaw_rate"], np.concatenate(offsets, axis=1), np.repeat([s.turn_rad for s in shapes], counts)
     )
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
-    if nation := nation_of(country_of(root)):
+    if nation := nation_of(country_in_scenario_name(root)):
         recording.conditions["nation"] = nation
     if len(states):
         recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
@@ -140,7 +142,7 @@ def _move_to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floa
 
 def _findings_on_unread_parts(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
     """Return findings on values that are not read (areas and intervals), and on obstacles without states."""
-    uncertain = sum(int(float(str(o.xpath(_COUNT_OF_INEXACT_VALUES)))) for o in obstacles)
+    uncertain = sum(int(float(str(o.xpath(_COUNT_OF_INEXACT_VALUES_XPATH)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
     still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
     findings = []
@@ -217,7 +219,7 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
         columns.append(dict(zip(places, values.T, strict=True)))
     rest = b"<trajectory/>".join(parts[::2])
     # if a trajectory is in a comment, or was not extracted (with attributes or without content), the order is uncertain
-    if b"<trajectory" in b"".join(_COMMENT.findall(rest)) or rest.count(b"<trajectory") != len(columns):
+    if b"<trajectory" in b"".join(_COMMENT_OR_CDATA.findall(rest)) or rest.count(b"<trajectory") != len(columns):
         return None
     return rest, columns
 

@@ -37,7 +37,7 @@ _LIMIT_KINDS = frozenset({"speed_limit", "speed_zone"})
 _KINDS_AT_LANE_END = frozenset({"traffic_light", "stop", "give_way"})  # these hold where the traffic of a lanelet waits
 _SPEED_KINDS = _LIMIT_KINDS | {"minimum_speed"}
 _STVO_NUMBER = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # an StVO number: all those that limit the speed are known
-_MAX_LIMIT_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
+_MAX_CREDIBLE_SPEED_LIMIT_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
 # additional plates that give a direction or a reason; other plates restrict the sign above them
 _UNRESTRICTIVE_PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
 
@@ -249,7 +249,7 @@ def _why_implausible(limit_mps: float) -> str | None:
     """Return why a number cannot be a speed limit in m/s, or None if it can."""
     if limit_mps <= 0:
         return f"{limit_mps:g} m/s is not a speed limit"
-    if limit_mps > _MAX_LIMIT_MPS:
+    if limit_mps > _MAX_CREDIBLE_SPEED_LIMIT_MPS:
         return f"{limit_mps:g} m/s is more than any sign allows: the value may be in km/h"
     return None
 

@@ -71,7 +71,7 @@ def read_modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> 
     return ModalityFile(path, columns, schema_metadata(path, rows.schema))
 
 
-def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
+def frame_table_columns_and_log_info(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
     """Return the columns of the table of frames, and the metadata of the log.
 
     The columns are `timestamp_us` and, for each other file, the number of its row in the frame (NULL: the file has no row for it).
@@ -87,10 +87,10 @@ def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
 def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
     """Return data set, location and version of a log or map. Errors: `TraceError` for a version that is not read."""
     version, location = str(entries.get("version", "unknown")), entries.get("location")
-    if not facts.is_read_version(version):
+    if not facts.is_supported_version(version):
         raise TraceError(
-            f"{path}: py123d {version} wrote the file, but only the versions {facts.READ_VERSIONS[0]} to "
-            f"{facts.READ_VERSIONS[-1]} are supported: convert the log again with one of these"
+            f"{path}: py123d {version} wrote the file, but only the versions {facts.SUPPORTED_VERSIONS[0]} to "
+            f"{facts.SUPPORTED_VERSIONS[-1]} are supported: convert the log again with one of these"
         )
     return LogInfo(str(entries.get("dataset", "")), None if location is None else str(location), version)
 

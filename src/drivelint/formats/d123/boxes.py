@@ -12,7 +12,7 @@ from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, S
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, list_lengths, read_modality, vectors
-from drivelint.formats.riders import join_riders
+from drivelint.formats.riders import join_riders_and_return_merged_rows_and_rider_tracks
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -27,11 +27,11 @@ _COLUMNS: Final = {
     "label": pa.list_(pa.int32()),
     "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
 }
-SAME_VELOCITY_MPS: Final = 1e-6
+DERIVED_VELOCITY_TOLERANCE_MPS: Final = 1e-6
 """A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
-_LEAST_COMPARED_BOXES: Final = 20
+_LEAST_BOXES_TO_DETECT_DERIVED_VELOCITIES: Final = 20
 """With fewer boxes that have a box one frame before and after, velocities count as measured."""
-_LEAST_SAME_VELOCITY_SHARE: Final = 0.99
+_LEAST_DERIVED_VELOCITY_SHARE: Final = 0.99
 """If at least this share of the velocities is equal to the mean velocity, all were computed from the boxes."""
 
 
@@ -79,9 +79,12 @@ def box_states(
     numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
     numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
     riders, ridden = (
-        np.isin(integers(flat["label"]), numbers_of) for numbers_of in facts.rider_labels(_label_enumeration(boxes))
+        np.isin(integers(flat["label"]), numbers_of)
+        for numbers_of in facts.rider_and_ridden_label_numbers(_label_enumeration(boxes))
     )
-    inside, on_something = join_riders(t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers)
+    inside, on_something = join_riders_and_return_merged_rows_and_rider_tracks(
+        t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers
+    )
     states = States(
         [str(token) for token in tracks.dictionary.to_pylist()],
         integers(tracks.indices).astype(np.int32),
@@ -193,15 +196,16 @@ def _has_derived_velocities(states: States, frame: Indices, has_velocity: Mask) 
     actor, at = states.actor[order], frame[order]
     in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)
     middle = np.flatnonzero(in_row & has_velocity[order[1:-1]]) + 1
-    if len(middle) < _LEAST_COMPARED_BOXES:
+    if len(middle) < _LEAST_BOXES_TO_DETECT_DERIVED_VELOCITIES:
         return False
     before, here, after = order[middle - 1], order[middle], order[middle + 1]
     span_s = (states.t_ns[after] - states.t_ns[before]) * 1e-9
     with np.errstate(divide="ignore", invalid="ignore"):
         way = np.asarray((states.place[:, after] - states.place[:, before]) / span_s, np.float64)
     off = np.hypot(*(way - states.velocity[:, here]))
-    moving = np.hypot(*way) > SAME_VELOCITY_MPS
+    moving = np.hypot(*way) > DERIVED_VELOCITY_TOLERANCE_MPS
     return bool(
         moving.any()
-        and (off[moving] <= SAME_VELOCITY_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SAME_VELOCITY_SHARE
+        and (off[moving] <= DERIVED_VELOCITY_TOLERANCE_MPS * (1.0 + np.hypot(*way[:, moving]))).mean()
+        >= _LEAST_DERIVED_VELOCITY_SHARE
     )

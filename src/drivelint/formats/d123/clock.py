@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Times
 
-_LATEST_US: Final = 1 << 52  # the year 2112: a clock beyond it is broken
+_LATEST_CREDIBLE_TIME_US: Final = 1 << 52  # the year 2112: a clock beyond it is broken
 
 
 class LogTimeConverter(NamedTuple):
@@ -45,7 +45,7 @@ def converter_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc:
     """
     every = np.concatenate([integers(stamps) for stamps in time_columns])
     low, high = int(every.min()), int(every.max())
-    if max(-low, high) > _LATEST_US:
+    if max(-low, high) > _LATEST_CREDIBLE_TIME_US:
         raise TraceError(
             f"{folder}: times from {low} to {high} us: the clock or its unit is wrong: convert the log again"
         )

@@ -26,12 +26,12 @@ _COLUMNS: Final = {
     "dynamic_state_se3": pa.list_(pa.float64(), 9),  # velocity, acceleration, angular velocity along the ego's axes
 }
 EGO_ID: Final = "ego"
-_MAX_TURN_WITHOUT_RATES_RAD: Final = 0.02
-_LEAST_COMPARED_POSES: Final = 20
+_MAX_HEADING_CHANGE_WITH_ZERO_TURN_RATES_RAD: Final = 0.02
+_LEAST_POSES_TO_DETECT_DERIVED_VELOCITIES: Final = 20
 """With fewer poses that have a pose before and after, velocities count as measured."""
-_LEAST_SAME_VELOCITY_SHARE: Final = 0.99
+_LEAST_DERIVED_VELOCITY_SHARE: Final = 0.99
 """If at least this share of the velocities is equal to the mean velocity, all were computed from the poses."""
-_SAME_VELOCITY_MPS: Final = 1e-6
+_DERIVED_VELOCITY_TOLERANCE_MPS: Final = 1e-6
 
 
 class EgoBox(NamedTuple):
@@ -50,7 +50,7 @@ def read_ego(folder: Path) -> ModalityFile:
     return found
 
 
-def ego_id(box_ids: Iterable[str]) -> str:
+def ego_id_unlike_box_ids(box_ids: Iterable[str]) -> str:
     """Return an id for the ego that no box has."""
     name, others = EGO_ID, set(box_ids)
     while name in others:
@@ -126,7 +126,7 @@ def _centre_velocity(ego: ModalityFile, imu: Poses, motion: Floats, box: EgoBox)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
     if (
         len(yaw)
-        and np.ptp(yaw) > _MAX_TURN_WITHOUT_RATES_RAD
+        and np.ptp(yaw) > _MAX_HEADING_CHANGE_WITH_ZERO_TURN_RATES_RAD
         and not (turning[has_velocity] != 0.0).any()
         and box.place[:2].any()
     ):
@@ -138,16 +138,17 @@ def _centre_velocity(ego: ModalityFile, imu: Poses, motion: Floats, box: EgoBox)
 def _has_derived_velocities(ego: ModalityFile, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
     """Return whether nearly all velocities are the mean velocity from the pose before to the pose after."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
-    if len(t_us) - 2 < _LEAST_COMPARED_POSES:
+    if len(t_us) - 2 < _LEAST_POSES_TO_DETECT_DERIVED_VELOCITIES:
         return False
     with np.errstate(divide="ignore", invalid="ignore"):
         way = (imu.place[2:] - imu.place[:-2]) / ((t_us[2:] - t_us[:-2]) * 1e-6)[:, None]
     off = np.linalg.norm(way - velocity[1:-1], axis=1)
     length = np.linalg.norm(way, axis=1)
-    moving = has_velocity[1:-1] & (length > _SAME_VELOCITY_MPS) & np.isfinite(length)
+    moving = has_velocity[1:-1] & (length > _DERIVED_VELOCITY_TOLERANCE_MPS) & np.isfinite(length)
     return bool(
         moving.any()
-        and (off[moving] <= _SAME_VELOCITY_MPS * (1.0 + length[moving])).mean() >= _LEAST_SAME_VELOCITY_SHARE
+        and (off[moving] <= _DERIVED_VELOCITY_TOLERANCE_MPS * (1.0 + length[moving])).mean()
+        >= _LEAST_DERIVED_VELOCITY_SHARE
     )
 
 

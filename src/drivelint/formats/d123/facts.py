@@ -55,7 +55,7 @@ class DatasetFacts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 FACTS_BY_DATASET: Final = {name: msgspec.convert(facts, DatasetFacts) for name, facts in _FACTS["datasets"].items()}
 UNKNOWN_DATASET: Final = DatasetFacts()
-READ_VERSIONS: Final[tuple[str, ...]] = tuple(_FACTS["versions"]["read"])
+SUPPORTED_VERSIONS: Final[tuple[str, ...]] = tuple(_FACTS["versions"]["read"])
 LAYER_NUMBERS: Final[dict[str, int]] = _FACTS["layers"]
 LABELS_BY_ENUMERATION: Final[dict[str, dict[str, tuple[int, str]]]] = {
     name: {label: (number, word) for label, (number, word) in labels.items()}
@@ -72,9 +72,9 @@ SIGNALLED_INTERSECTION_TYPE: Final[int] = _FACTS["intersection_types"]["TRAFFIC_
 """The type of an intersection with traffic lights."""
 
 
-def is_read_version(version: str) -> bool:
+def is_supported_version(version: str) -> bool:
     """Return whether files of this version of py123d are read; only its first two numbers count."""
-    return ".".join(version.split(".")[:2]) in READ_VERSIONS
+    return ".".join(version.split(".")[:2]) in SUPPORTED_VERSIONS
 
 
 def dataset_facts(name: str) -> DatasetFacts:
@@ -82,7 +82,7 @@ def dataset_facts(name: str) -> DatasetFacts:
     return FACTS_BY_DATASET.get(name, UNKNOWN_DATASET)
 
 
-def rider_labels(enumeration: str) -> tuple[list[int], list[int]]:
+def rider_and_ridden_label_numbers(enumeration: str) -> tuple[list[int], list[int]]:
     """Return the label numbers of riders and of ridden vehicles; none if the data set has no separate boxes for them."""
     both = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
     riders, ridden = (

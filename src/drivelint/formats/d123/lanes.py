@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _UNDRIVABLE_LANE_TYPES: Final = frozenset({"biking"})
 _MAX_SAMPLED_POINTS: Final = 200  # of a bound, to find the direction of a lane
-_MAX_LIMIT_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in another unit
+_MAX_CREDIBLE_SPEED_LIMIT_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in another unit
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
@@ -167,7 +167,7 @@ def _limit_spans_and_source(
     """Return the limit of a lane, if the map has one, and its source."""
     if limit_mps is None or math.isnan(limit_mps):
         return (), "lane"
-    if 0.0 < limit_mps <= _MAX_LIMIT_MPS:
+    if 0.0 < limit_mps <= _MAX_CREDIBLE_SPEED_LIMIT_MPS:
         return ((0.0, 1.0, limit_mps),), "lane"
     quality.add(
         "invalid_speed", "warning", str(lane_number), f"{limit_mps:g} m/s is not a speed limit: treated as unknown"

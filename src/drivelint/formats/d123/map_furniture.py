@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 _READ_LAYERS: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
-_LEAST_LEVEL_DIFFERENCE_M: Final = 3.0  # a crossing so far above or below a lane is not on it
+_LEAST_HEIGHT_DIFFERENCE_OF_LEVELS_M: Final = 3.0  # a crossing so far above or below a lane is not on it
 
 
 def road_lines(layers: MapLayers, quality: MapQuality) -> list[RoadLine]:
@@ -55,7 +55,7 @@ def crossing_rows(
 ) -> Rows:
     """Return the rows of `crossing`; lanes on another level than the crossing are left out."""
     outlines = layers.outlines("CROSSWALK", quality)
-    rows = crossings([_crossing_lane(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
+    rows = crossings([_crossing_as_lane(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
     by_id = {lane.lanelet_id: lane for lane in lanes}
     heights = {
         str(name): float(ring[:, 2].mean())
@@ -69,7 +69,7 @@ def crossing_rows(
     ]
 
 
-def _crossing_lane(crossing_id: int, ring: Floats) -> BoundedLane:
+def _crossing_as_lane(crossing_id: int, ring: Floats) -> BoundedLane:
     """Return a crossing as a lane whose bounds are the two halves of the outline."""
     half = (len(ring) + 1) // 2
     return BoundedLane(str(crossing_id), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
@@ -77,7 +77,7 @@ def _crossing_lane(crossing_id: int, ring: Floats) -> BoundedLane:
 
 def _is_crossing_on_level(crossing: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
     s = (crossing["s_start_m"] + crossing["s_end_m"]) / 2.0
-    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _LEAST_LEVEL_DIFFERENCE_M
+    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _LEAST_HEIGHT_DIFFERENCE_OF_LEVELS_M
 
 
 def report_missing_content(layers: MapLayers, about: facts.DatasetFacts, quality: MapQuality) -> None:

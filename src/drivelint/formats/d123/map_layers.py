@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _MAX_BOUND_LENGTH_M: Final = 100_000.0  # a longer bound is a mistake
-COLUMNS: Final = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
+MAP_FILE_COLUMNS: Final = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
 LIGHT_LANES_KEY: Final = b"drivelint.light_lanes"
 """Metadata that drivelint adds to the map of a log: the lanes for which the log has states of lights."""
 
@@ -63,13 +63,18 @@ class MapLayers:
     """The rows and the metadata of a map. `name`: the name of the map in errors."""
 
     def __init__(self, name: str, rows: pa.Table) -> None:
-        """Take a table with the columns `COLUMNS`. Errors: `TraceError` if it is not a map of 123D, or of a version that is not read."""
-        if missing := [column for column in COLUMNS if column not in rows.schema.names]:
+        """Take a table with the columns `MAP_FILE_COLUMNS`.
+
+        Errors: `TraceError` if it is not a map of 123D, or of a version that is not read.
+        """
+        if missing := [column for column in MAP_FILE_COLUMNS if column not in rows.schema.names]:
             raise TraceError(f"{name}: no column {', '.join(missing)}: this is not a map of 123D")
         self.header = schema_metadata(name, rows.schema)
         self.info = log_info(name, self.header)
         try:
-            self.rows = rows.select(list(COLUMNS)).cast(pa.schema(list(COLUMNS.items()))).combine_chunks()
+            self.rows = (
+                rows.select(list(MAP_FILE_COLUMNS)).cast(pa.schema(list(MAP_FILE_COLUMNS.items()))).combine_chunks()
+            )
         except pa.ArrowException as error:
             raise TraceError(
                 f"{name}: its columns are not those of a map of 123D: {error}: convert it again"

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask
 
-_MAX_LINE_DISTANCE_M: Final = 0.1  # about the width of a painted line
-_PIECE_LENGTH_M: Final = 2.0
+_MAX_LINE_DISTANCE_FROM_BOUND_M: Final = 0.1  # about the width of a painted line
+_BOUND_PIECE_LENGTH_M: Final = 2.0
 _SIDE_DEPENDENT_MARKINGS: Final = frozenset({"broken_solid", "solid_broken"})
 """Markings whose name depends on the side from which they are seen: known only if the lane that owns the line is known."""
 _UNKNOWN_MARKING_CODE: Final = -1
@@ -40,12 +40,14 @@ def lane_marks(
     bounds: Mapping[str, LaneBounds], lines: Sequence[RoadLine], about: facts.DatasetFacts
 ) -> dict[str, tuple[Mark, ...]]:
     """Return lane id -> its marks. `bounds`: in the order of the map."""
-    if about.lines_of_lanes and (marks := _marks_by_order(bounds, lines)) is not None:
+    if about.lines_of_lanes and (marks := _marks_if_lines_are_bounds_in_order(bounds, lines)) is not None:
         return marks
-    return _marks_by_place(bounds, lines, about)
+    return _marks_by_lines_along_bounds(bounds, lines, about)
 
 
-def _marks_by_order(bounds: Mapping[str, LaneBounds], lines: Sequence[RoadLine]) -> dict[str, tuple[Mark, ...]] | None:
+def _marks_if_lines_are_bounds_in_order(
+    bounds: Mapping[str, LaneBounds], lines: Sequence[RoadLine]
+) -> dict[str, tuple[Mark, ...]] | None:
     """Return the marks if the lines are the lanes' own bounds, in the order of the lanes; None if they are not."""
     marks: dict[str, tuple[Mark, ...]] = {}
     k = 0
@@ -61,7 +63,7 @@ def _marks_by_order(bounds: Mapping[str, LaneBounds], lines: Sequence[RoadLine])
     return marks if k == len(lines) else None
 
 
-def _marks_by_place(
+def _marks_by_lines_along_bounds(
     bounds: Mapping[str, LaneBounds], lines: Sequence[RoadLine], about: facts.DatasetFacts
 ) -> dict[str, tuple[Mark, ...]]:
     """Return the marks by the lines along each piece of a bound; unknown for a piece without lines, or with lines that differ."""
@@ -93,7 +95,7 @@ def _marking_code(line: RoadLine, about: facts.DatasetFacts) -> int:
 def _sample_points(bound: Floats) -> Floats:
     """Return points along a bound, (2 k + 1, 2): the ends and the middles of k equal pieces."""
     s = stations(bound)
-    k = max(1, int(np.ceil(s[-1] / _PIECE_LENGTH_M)))
+    k = max(1, int(np.ceil(s[-1] / _BOUND_PIECE_LENGTH_M)))
     return resampled(bound[:, :2], s, np.linspace(0.0, s[-1], 2 * k + 1))
 
 
@@ -103,7 +105,7 @@ def _marking_codes_of_pieces(points: Floats, starts: Indices, tree: shapely.STRt
     `starts`: the index of the first point of each bound, and the number of all points.
     """
     n = len(codes)
-    at, line = all_pairs(tree, shapely.points(points), "dwithin", _MAX_LINE_DISTANCE_M)
+    at, line = all_pairs(tree, shapely.points(points), "dwithin", _MAX_LINE_DISTANCE_FROM_BOUND_M)
     keys = np.sort(at.astype(np.int64) * n + line)
     within = np.arange(len(points)) - np.repeat(starts[:-1], np.diff(starts))
     middles = np.flatnonzero(within % 2 == 1)

@@ -24,9 +24,9 @@ from drivelint.formats.d123.arrow_files import (
     LIGHTS,
     SYNC,
     file_path,
+    frame_table_columns_and_log_info,
     integers,
     read_modality,
-    sync_table,
 )
 from drivelint.formats.d123.clock import converter_from_times
 from drivelint.formats.d123.lights import light_states, read_lights
@@ -52,7 +52,7 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_SAME_TIME_TOLERANCE_US: Final = 10  # a difference in time in which no actor moves by a millimetre
+_SAME_EGO_AND_BOX_TIME_TOLERANCE_US: Final = 10  # a difference in time in which no actor moves by a millimetre
 _MALFORMED_FRAMES_TEXT: Final = (
     "frames whose lists of boxes differ in length or lack a track, or that refer to missing rows"
 )
@@ -70,14 +70,14 @@ def read(probe: Probe) -> Recording:
     a usable frame.
     """
     folder = probe.path
-    sync, info = sync_table(folder)
+    sync, info = frame_table_columns_and_log_info(folder)
     about = facts.dataset_facts(info.dataset)
     ego, boxes, lights = ego_file.read_ego(folder), box_file.read_boxes(folder), read_lights(folder)
     files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
     time = converter_from_times(folder, [sync["timestamp_us"], *files], utc=about.utc)
     frames = _usable_frame_rows(folder, sync, ego, boxes)
     recording = Recording(
-        NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_origin_note(info), *time.notes]
+        NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_data_set_note(info), *time.notes]
     )
     recording.notes += frames.notes
     if nation := about.nation_of(info.location):
@@ -100,7 +100,7 @@ def read(probe: Probe) -> Recording:
         box_states.append(states)
         recording.findings += findings
         recording.notes += notes
-    name = ego_file.ego_id(box_states[0].ids if box_states else ())
+    name = ego_file.ego_id_unlike_box_ids(box_states[0].ids if box_states else ())
     forward_m = 0.0 if probe.options.ego_size is None else probe.options.ego_size.forward_m
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
@@ -121,7 +121,7 @@ def read(probe: Probe) -> Recording:
 
 def log_time_converter(folder: Path) -> LogTimeConverter:
     """Return the clock with which `read` reads a log. Errors: as `read`."""
-    sync, info = sync_table(folder)
+    sync, info = frame_table_columns_and_log_info(folder)
     files = [read_modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
     times = [file.columns["timestamp_us"] for file in files if file is not None]
     return converter_from_times(folder, [sync["timestamp_us"], *times], utc=facts.dataset_facts(info.dataset).utc)
@@ -187,7 +187,7 @@ def _nearest_ego_rows(box_us: Times, ego_us: Times, rows_of_frames: Indices) -> 
     after = np.clip(np.searchsorted(ego_us, box_us), 1, max(len(ego_us) - 1, 1))
     before, after = after - 1, np.minimum(after, len(ego_us) - 1)
     rows = np.where(box_us - ego_us[before] <= ego_us[after] - box_us, before, after)
-    return rows, np.where(np.abs(ego_us[rows] - box_us) <= _SAME_TIME_TOLERANCE_US, box_us, ego_us[rows])
+    return rows, np.where(np.abs(ego_us[rows] - box_us) <= _SAME_EGO_AND_BOX_TIME_TOLERANCE_US, box_us, ego_us[rows])
 
 
 def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
@@ -200,6 +200,6 @@ def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
     )
 
 
-def _origin_note(info: LogInfo) -> str:
+def _data_set_note(info: LogInfo) -> str:
     place = "" if info.location is None else f", {info.location}"
     return f"data set {info.dataset or 'without a name'}{place}; written by py123d {info.version}"

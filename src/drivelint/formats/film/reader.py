@@ -40,7 +40,7 @@ formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
 PULL_OUT_START_OVER_LINE_M: Final = 0.06
 """How far a corner of the ego is over the centre line in the first frame of pulling out: just over 0.05 m, which counts as over it."""
-LAST_PULL_OUT_FRAME_REMAINING_M: Final = 0.11
+LAST_PULL_OUT_FRAME_DISTANCE_TO_OFFSET_M: Final = 0.11
 """How far the ego is from its offset of passing in the last frame of pulling out: just over 0.1 m, which does not count as settled."""
 FRAME_NUMBER_LIMIT: Final = 10_000_000
 """46 hours at 60 frames a second: this or a larger number is not a frame number."""
@@ -85,7 +85,7 @@ def read(probe: Probe) -> Recording:
     if not len(frames):
         raise TraceError(f"{path}: no frame is in the range of the mapping {stem!r}: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
-    states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
+    states, egos_x = _states_and_ego_x_range(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's path across them"
     message = (
         f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
@@ -146,7 +146,7 @@ def _distances_in_table(
     return DistancesAhead(whole, ahead)
 
 
-def _states(
+def _states_and_ego_x_range(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
     """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""
@@ -205,7 +205,7 @@ def _ego_beyond_centre_line_m(film: VideoMapping, stages: OvertakeStages, frames
             points.append((float(pulling[0] - 1), min(home, touching - 2 * PULL_OUT_START_OVER_LINE_M)))
         points += [
             (float(pulling[0]), touching),
-            (float(pulling[-1]), max(touching, stages.offset - LAST_PULL_OUT_FRAME_REMAINING_M)),
+            (float(pulling[-1]), max(touching, stages.offset - LAST_PULL_OUT_FRAME_DISTANCE_TO_OFFSET_M)),
         ]
     points.append((float(stages.passing), stages.offset))
     if len(leaving):

@@ -54,7 +54,7 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
 }
 _LIST_FIELDS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
 _TEXT_FIELDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
-_MIN_BLOCK_BYTES: Final = 1 << 20
+_MIN_JSON_BLOCK_BYTES: Final = 1 << 20
 
 
 def decoded_rows(path: Path, schema: Schema, log_messages: list[LogMessage]) -> pa.StructArray:
@@ -73,7 +73,7 @@ def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
     # JSON strings contain no raw line breaks, so each message can be put on one line
     lines = [message.replace(b"\n", b" ").replace(b"\r", b" ") for message in messages]
     parse = json.ParseOptions(explicit_schema=schema, unexpected_field_behavior="ignore")
-    block = json.ReadOptions(block_size=max(_MIN_BLOCK_BYTES, 2 * max(map(len, lines)) + 2))
+    block = json.ReadOptions(block_size=max(_MIN_JSON_BLOCK_BYTES, 2 * max(map(len, lines)) + 2))
     text = b"\n".join(lines)
     text.decode()  # raises for invalid UTF-8, which the library would only notice when the texts are used
     table = json.read_json(pa.BufferReader(text), block, parse).combine_chunks()

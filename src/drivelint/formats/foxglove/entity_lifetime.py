@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MAX_ADDED_STATES: Final = 20_000_000
 """If more states than this would be added, the log is refused: no log has so many road users that stand still."""
-STALE_NS: Final = 500_000_000
+MOVING_ENTITY_STALE_AFTER_NS: Final = 500_000_000
 """A moving entity is present but not placed if its last update is older than this."""
 _NEVER_NS: Final = np.iinfo(np.int64).max
 
@@ -82,7 +82,7 @@ def _states_between_updates(
     replaced = (follows <= gone_ns) & (follows < _NEVER_NS)
     # an entity whose next update has another place moved, and gets no states in between
     still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
-    first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
+    first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, MOVING_ENTITY_STALE_AFTER_NS), side="right")
     last = np.searchsorted(grid_ns, np.minimum(follows, gone_ns), side="left")
     count = np.where(still | ~replaced, np.maximum(last - first, 0), 0)
     total = int(count.sum())

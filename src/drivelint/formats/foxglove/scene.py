@@ -30,7 +30,7 @@ from drivelint.formats.foxglove.decode import (
 from drivelint.formats.foxglove.entity_lifetime import with_states_between_updates
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import lost_times_of_parts
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.storage import recorded_file
@@ -39,11 +39,11 @@ from drivelint.formats.protobuf.descriptors import list_items_and_row_indices, s
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
-    choose_clock,
     distinct_values,
     frame_times_and_start,
     join_batches,
     recorded_poses,
+    set_times_and_return_are_own_times,
     states_in_fixed_frame,
 )
 from drivelint.phrases import name_list
@@ -86,7 +86,9 @@ def read(path: Path, topic: str | None) -> Recording:
         for name, log_messages in message_batches(container, partial(_readable_message_type, topic, unread)):
             channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
-            decoded, readable = decode_readable(container, log_messages, partial(decoded_rows, file, schema))
+            decoded, readable = decode_readable_and_record_losses(
+                container, log_messages, partial(decoded_rows, file, schema)
+            )
             if decoded is None:
                 continue
             log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
@@ -207,7 +209,7 @@ def _recording(
     if scene.without_box:
         message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
-    own_times = choose_clock({topic: rows}, findings)
+    own_times = set_times_and_return_are_own_times({topic: rows}, findings)
     frames = _transform_tree(transforms, own_times=own_times)
     rows = with_states_between_updates(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct_values(rows.frames)[0]))

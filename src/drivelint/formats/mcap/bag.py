@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 COMPRESSED_SUFFIX: Final = ".zstd"
 """The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
-_MOST_BETWEEN_PARTS_NS: Final = 1_000_000_000
+_MOST_TIME_BETWEEN_PARTS_NS: Final = 1_000_000_000
 """A recorder goes on with the next file at once."""
 _MOST_LISTED_TOPICS: Final = 8
 """An error lists at most this many topics, and counts the others."""
@@ -108,7 +108,7 @@ def _continues(first: Path, second: Path) -> bool:
     with suppress(TraceError, OSError, ValueError):
         earlier, later = recorded_span(first), recorded_span(second)
         if earlier is not None and later is not None:
-            return abs(later[0] - earlier[1]) <= _MOST_BETWEEN_PARTS_NS
+            return abs(later[0] - earlier[1]) <= _MOST_TIME_BETWEEN_PARTS_NS
     return False
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 MESSAGE_INDEX_HEADER: Final = struct.Struct("<HI")
 """The header of a message index: channel id, and length in bytes of the entries that follow."""
-_INDEX_ENTRY: Final = struct.Struct("<QQ")
+_MESSAGE_INDEX_ENTRY: Final = struct.Struct("<QQ")
 _MOST_LISTED_CONTRADICTIONS: Final = 3
 
 
@@ -43,16 +43,16 @@ class MessageCounts:
         """End the chunk, after all its messages were read."""
         self._open_chunk, self._last_chunk = None, self._open_chunk
 
-    def missing_times_of_chunk(self, index: memoryview) -> list[int]:
+    def count_missing_messages_of_chunk_and_return_times(self, index: memoryview) -> list[int]:
         """Return the log times of messages that are in the message index after a chunk, but not in the chunk.
 
         These messages are added to the counts, because the caller reports them as lost.
         """
         channel, length = MESSAGE_INDEX_HEADER.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
-        if found is None or length <= _INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
+        if found is None or length <= _MESSAGE_INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
             return []
-        named = Counter(log_ns for log_ns, _ in _INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
+        named = Counter(log_ns for log_ns, _ in _MESSAGE_INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
         missing = sorted((named - Counter(found)).elements())
         self.by_channel[channel] += len(missing)
         return missing

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-MOST_BACKWARD_STEP_NS: Final = 1_000_000_000
+MOST_BACKWARD_LOG_TIME_JUMP_NS: Final = 1_000_000_000
 """If log times go back by more, messages are not in the order of time, and lost bytes between two messages may be of any time."""
 
 
@@ -58,7 +58,7 @@ class Losses:
         """The lost bytes that were found last."""
         return self.lost_bytes[-1]
 
-    def bound_by_message(self, log_ns: int) -> None:
+    def bound_loss_times_by_message(self, log_ns: int) -> None:
         """Record the log time of a message that was read: it bounds the lost bytes before and after it."""
         if self.first_ns is None:
             self.first_ns = log_ns
@@ -66,7 +66,7 @@ class Losses:
             if not self.lost_bytes[k].timed:
                 self.lost_bytes[k] = replace(self.lost_bytes[k], until_ns=log_ns)
         self._open = len(self.lost_bytes)
-        self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_STEP_NS
+        self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_LOG_TIME_JUMP_NS
         self._latest_ns = max(self._latest_ns, log_ns)
         self.last_ns = log_ns
 
@@ -91,7 +91,7 @@ class Losses:
         """Return whether the byte at `offset` is lost."""
         return any(each.start <= offset < each.end for each in self.lost_bytes)
 
-    def bound_by_chunks(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
+    def bound_loss_times_by_chunks(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
         """Bound the times of lost bytes by the times that the index has for the chunks in them.
 
         `chunks`: offset of a chunk -> its length, first and last log time.

@@ -18,7 +18,7 @@ MOST_MALFORMED_SHARE: Final = 0.1
 """If a larger share of messages cannot be decoded, the schema is wrong, and the other messages were decoded by chance."""
 
 
-def decode_readable(
+def decode_readable_and_record_losses(
     container: Container, log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], T]
 ) -> tuple[T | None, list[LogMessage]]:
     """Decode a batch, and add its malformed messages to the losses of `container`.

@@ -33,7 +33,7 @@ ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
 _RECORD_HEADER: Final = struct.Struct("<BQ")
 _MESSAGE_HEADER: Final = struct.Struct("<HIQ")
 _MESSAGE_INDEX_HEADER: Final = struct.Struct("<HI")
-_BLOCK_BYTES: Final = 4 << 20
+_HASHED_BLOCK_BYTES: Final = 4 << 20
 
 
 class Record(NamedTuple):
@@ -61,7 +61,7 @@ class OriginalFile:
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
-        self.has_complete_indexes = self._read_schemas_and_channels()
+        self.has_complete_indexes = self._read_schemas_and_channels_and_return_are_indexes_complete()
 
     def __enter__(self) -> Self:
         return self
@@ -137,7 +137,7 @@ class OriginalFile:
         channel, sequence, log_time = _MESSAGE_HEADER.unpack_from(self._view, record.body_at)
         return channel, sequence, log_time
 
-    def _read_schemas_and_channels(self) -> bool:
+    def _read_schemas_and_channels_and_return_are_indexes_complete(self) -> bool:
         """Set schemas and channels; return whether the indexes are complete. If not, the chunks are unpacked for schemas and channels."""
         indexed_channels: set[int] = set()
         chunks: list[Record] = []
@@ -216,8 +216,8 @@ class OriginalFile:
     def current_sha256(self) -> str:
         """Return the SHA-256 of the file's present content."""
         digest = hashlib.sha256()
-        for start in range(0, len(self._view), _BLOCK_BYTES):
-            digest.update(self.read(start, min(start + _BLOCK_BYTES, len(self._view))))
+        for start in range(0, len(self._view), _HASHED_BLOCK_BYTES):
+            digest.update(self.read(start, min(start + _HASHED_BLOCK_BYTES, len(self._view))))
         return digest.hexdigest()
 
 

@@ -18,7 +18,7 @@ from mcap.records import AttachmentIndex, Channel, ChunkIndex, MetadataIndex, Sc
 
 from drivelint.formats.mcap.original import message_index
 from drivelint.formats.mcap.resume import MAGIC
-from drivelint.formats.mcap.writer import free_id
+from drivelint.formats.mcap.writer import unused_id
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,10 +35,12 @@ _SUMMARY_OPCODES: Final = frozenset({
     Opcode.DATA_END, Opcode.FOOTER, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX, Opcode.STATISTICS,
     Opcode.SUMMARY_OFFSET,
 })  # fmt: skip
-LOOSE_CHUNK_BYTES: Final = 4 << 20
+BYTES_PER_CHUNK_OF_LOOSE_MESSAGES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
-_BLOCK_BYTES: Final = 4 << 20
-_MOST_HEADER_BYTES: Final = 1 << 17  # enough for the names and times of an attachment or a chunk, without its data
+_COPIED_BLOCK_BYTES: Final = 4 << 20
+_MOST_BYTES_BEFORE_RECORD_DATA: Final = (
+    1 << 17
+)  # enough for the names and times of an attachment or a chunk, without its data
 
 
 class IdsInCopy:
@@ -68,7 +70,7 @@ def _id_in_copy(declaration: T, records_by_id: dict[int, T], kind: str, *, least
     same = [number for number, known in records_by_id.items() if replace(known, id=0) == replace(declaration, id=0)]
     if declaration.id not in records_by_id or declaration.id in same:
         return declaration.id
-    return min(same) if same else free_id(records_by_id, least, kind)
+    return min(same) if same else unused_id(records_by_id, least, kind)
 
 
 class PartCopy:
@@ -97,7 +99,7 @@ class PartCopy:
                 self._index_last_chunk()
             if record.opcode in _LOOSE_OPCODES:
                 self._loose.append(record)
-                if record.end - self._loose[0].at >= LOOSE_CHUNK_BYTES:
+                if record.end - self._loose[0].at >= BYTES_PER_CHUNK_OF_LOOSE_MESSAGES:
                     self._write_loose_records()
                 continue
             self._write_loose_records()
@@ -118,7 +120,7 @@ class PartCopy:
 
     def _copy_record(self, record: Record) -> None:
         self._to = record.end
-        if self._to - self._from > _BLOCK_BYTES:
+        if self._to - self._from > _COPIED_BLOCK_BYTES:
             self._flush()
 
     def _skip_record(self, record: Record) -> None:
@@ -159,8 +161,8 @@ class PartCopy:
         return bytes(builder.end())[_RECORD_HEADER.size :]  # type: ignore[no-untyped-call]
 
     def _flush(self) -> None:
-        for start in range(self._from, self._to, _BLOCK_BYTES):
-            self._sink.write(self._original.read(start, min(start + _BLOCK_BYTES, self._to)))
+        for start in range(self._from, self._to, _COPIED_BLOCK_BYTES):
+            self._sink.write(self._original.read(start, min(start + _COPIED_BLOCK_BYTES, self._to)))
         self._from = self._to
 
     def _offset_in_copy(self, at: int) -> int:
@@ -170,7 +172,7 @@ class PartCopy:
     def _add_to_index(self, record: Record) -> None:
         """Add a chunk, attachment or metadata record, which will be copied, to the index of the copy."""
         start, length = self._offset_in_copy(record.at), record.end - record.at
-        head = self._original.body_stream(record, _MOST_HEADER_BYTES)
+        head = self._original.body_stream(record, _MOST_BYTES_BEFORE_RECORD_DATA)
         if record.opcode == Opcode.CHUNK:
             begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
             self._chunk = record, ChunkIndex(

@@ -242,7 +242,7 @@ class Container:
                 raise self._damage_error(at, f"a message on channel {number}, which was never declared,", end)
             self._n_messages += 1
             self.counts.add(number, log_time)
-            self.losses.bound_by_message(log_time)
+            self.losses.bound_loss_times_by_message(log_time)
             yield LogMessage(self.channels[number], log_time, bytes(body[_MESSAGE_HEADER.size :]), at)
         elif opcode == Opcode.SCHEMA:
             schema = self._parse_record(Schema.read, body, at)
@@ -275,7 +275,7 @@ class Container:
         self.counts.end_chunk()
 
     def _check_message_index(self, body: memoryview, at: int) -> None:
-        for log_ns in self.counts.missing_times_of_chunk(body):
+        for log_ns in self.counts.count_missing_messages_of_chunk_and_return_times(body):
             error = self._damage_error(at, "a message is missing from the chunk before its index")
             if not self.salvage:
                 raise error
@@ -351,7 +351,7 @@ class Container:
         if missing := [at for at in index.metadata if at not in self._read_offsets]:
             raise self._damage_error(missing[0], "no metadata record, where the index has one,")
         if index.chunks:
-            self.losses.bound_by_chunks(index.chunks)
+            self.losses.bound_loss_times_by_chunks(index.chunks)
 
     def _report_counts_and_missing_crcs(self) -> None:
         if self._statistics is not None and not self.losses.has_lost_bytes:

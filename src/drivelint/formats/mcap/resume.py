@@ -25,7 +25,7 @@ _OPCODES_AFTER_DATA_END: Final = frozenset({
 _LEAST_CHAIN_MESSAGES: Final = 3
 """Bytes that look like this many consecutive messages on known channels are certainly messages."""
 _LEAST_MESSAGE_BYTES: Final = 22
-_MOST_UNPACKED_FILE_SIZES: Final = 4
+_MOST_UNPACKED_MULTIPLE_OF_FILE_SIZE: Final = 4
 """A search unpacks at most this multiple of the file's size (`_LEAST_UNPACKING_LIMIT_BYTES`, if that is more).
 
 So it also ends for a file full of false chunk headers.
@@ -40,7 +40,7 @@ def next_record_offset(view: memoryview, at: int, *, channels: Container[int] | 
     Reading goes on at an intact chunk, a data end record, or the footer; in a file without chunks also at a message.
     `channels`: the known channel ids of a file without chunks; None: the file has chunks, and messages are only inside them.
     """
-    bytes_to_unpack = max(_MOST_UNPACKED_FILE_SIZES * len(view), _LEAST_UNPACKING_LIMIT_BYTES)
+    bytes_to_unpack = max(_MOST_UNPACKED_MULTIPLE_OF_FILE_SIZE * len(view), _LEAST_UNPACKING_LIMIT_BYTES)
     place = at
     while bytes_to_unpack > 0 and (match := _RECORD_HEADER_PATTERN.search(view, place)):
         place = match.start()

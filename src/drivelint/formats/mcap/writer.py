@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ID_LIMIT: Final = 1 << 16  # channel and schema ids have 16 bits; schema id 0 means: no schema
 _ZSTD_LEVEL: Final = 1
-_BLOCK_BYTES: Final = 4 << 20
+_WRITTEN_BLOCK_BYTES: Final = 4 << 20
 
 
 class Sink:
@@ -47,8 +47,8 @@ class Sink:
 
     def write(self, data: bytes | memoryview) -> None:
         """Append bytes unchanged."""
-        for start in range(0, len(data), _BLOCK_BYTES):
-            block = data[start : start + _BLOCK_BYTES]
+        for start in range(0, len(data), _WRITTEN_BLOCK_BYTES):
+            block = data[start : start + _WRITTEN_BLOCK_BYTES]
             self._crc = zlib.crc32(block, self._crc)
             self._file.write(block)
         self.offset += len(data)
@@ -66,12 +66,12 @@ class Sink:
         `schema` has the id 0, as its id is chosen here. Errors: `DriveLintError` if no id is free.
         """
         same = [number for number, known in self.schemas.items() if replace(known, id=0) == replace(schema, id=0)]
-        number = min(same) if same else free_id(self.schemas, 1, "schema")
+        number = min(same) if same else unused_id(self.schemas, 1, "schema")
         if not same:
             self.schemas[number] = replace(schema, id=number)
             self._write_record(self.schemas[number])
         channel = records.Channel(
-            id=free_id(self.channels, 0, "channel"),
+            id=unused_id(self.channels, 0, "channel"),
             topic=topic,
             message_encoding=encoding,
             metadata=dict(metadata or {}),
@@ -195,7 +195,7 @@ class Sink:
         )
 
 
-def free_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
+def unused_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
     """Return the id after the highest used one, or if that is too large, the lowest free id. Errors: `DriveLintError` if none is free."""
     after = max(used_ids, default=least - 1) + 1
     if after < ID_LIMIT:

@@ -100,7 +100,7 @@ class EdgeEvaluator:
         apart = np.diff(stations, prepend=-np.inf) > _SAME_STATION_M
         return np.concatenate([[start], stations[apart], [end]])
 
-    def sideways_steps(self, record_change_stations: Floats) -> tuple[Floats, Floats]:
+    def stations_and_sizes_of_sideways_jumps(self, record_change_stations: Floats) -> tuple[Floats, Floats]:
         """Return the inner break points where an edge steps sideways, and by how much (m)."""
         inner = record_change_stations[1:-1]
         if not len(inner):

@@ -69,7 +69,7 @@ class DrivingSideStatements:
     def collect(cls, net: Network, request: MapOptions) -> DrivingSideStatements:
         """Collect the statements of the option, the roads' rules, the junctions, the lanes' travel directions and the traces."""
         roads = Counter(road.rule for road in net.roads.values() if road.rule)
-        junctions, travel = _side_votes_by_junctions(net), _side_votes_by_travel_direction(net)
+        junctions, travel = _driving_side_votes_of_junction_lanes(net), _driving_side_votes_of_travel_directions(net)
         candidates = [
             ("option", request.side, "--handedness says", False),
             ("attribute", _decisive_side(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
@@ -194,7 +194,7 @@ def _decisive_side(votes: Counter[str]) -> str | None:
     return side if n >= _DECISIVE_SHARE * votes.total() else None
 
 
-def _side_votes_by_junctions(net: Network) -> Counter[str]:
+def _driving_side_votes_of_junction_lanes(net: Network) -> Counter[str]:
     """Return how many lanes in junctions show lht and rht: traffic runs away from the end at which their road is entered."""
     votes: Counter[str] = Counter()
     for connection in net.connections:
@@ -208,7 +208,7 @@ def _side_votes_by_junctions(net: Network) -> Counter[str]:
     return votes
 
 
-def _side_votes_by_travel_direction(net: Network) -> Counter[str]:
+def _driving_side_votes_of_travel_directions(net: Network) -> Counter[str]:
     lanes = (lane for road in net.roads.values() for lane_section in road.lane_sections for lane in lane_section.lanes)
     return Counter(
         "rht" if (lane.travel == "forward") == (lane.number < 0) else "lht"

@@ -191,7 +191,7 @@ def _objects_of_element(road: Road, element: etree._Element, offset: tuple[float
         start = number_attribute(repeat, "s", number_attribute(element, "s"))
         ends = [number_attribute(repeat, end, number_attribute(element, "t", 0.0)) for end in ("tStart", "tEnd")]
         if distance <= 0.0:
-            yield _band_object(road, element, repeat, offset)
+            yield _continuous_object_along_road(road, element, repeat, offset)
             continue
         steps = np.arange(min(int(length / distance + 1e-6) + 1, MAX_REPEATS + 1)) * distance
         n_repeats += len(steps)
@@ -224,7 +224,7 @@ def _objects_at(
         yield PlacedObject(road, element, name, float(s[i]), float(x[i]), float(y[i]), outline)
 
 
-def _band_object(
+def _continuous_object_along_road(
     road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]
 ) -> PlacedObject:
     """Return an object that runs along the road without gaps."""

@@ -88,7 +88,7 @@ class _SectionBuilder:
         try:
             evaluator = EdgeEvaluator(road, lane_section)
             breaks = evaluator.record_change_stations()
-            at, step = evaluator.sideways_steps(breaks)
+            at, step = evaluator.stations_and_sizes_of_sideways_jumps(breaks)
             s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_SECTION_M])))
             edges = evaluator.edges(s)
         except MalformedError as error:

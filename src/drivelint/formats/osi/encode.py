@@ -12,7 +12,7 @@ import pyarrow as pa
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.decode import COLUMNS_BY_VECTOR
 from drivelint.formats.osi.enum_codes import BRAKE_LIGHT_NAMES, INDICATOR_NAMES
-from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE, VERSION, enum_numbers, message_class
+from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE, WRITTEN_OSI_VERSION, enum_numbers, message_class
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,8 +31,8 @@ _OSI_OBJECT_TYPES: Final = {
     "pedestrian": "PEDESTRIAN", "animal": "ANIMAL", "object": "OTHER", **dict.fromkeys(_OSI_VEHICLE_TYPES, "VEHICLE"),
 }  # fmt: skip
 _VEHICLE_CLASSIFICATION: Final = "MovingObject.VehicleClassification"
-_LIGHT_STATE: Final = f"{_VEHICLE_CLASSIFICATION}.LightState"
-_LIGHT_FIELDS: Final = {
+_VEHICLE_LIGHT_STATE: Final = f"{_VEHICLE_CLASSIFICATION}.LightState"
+_VEHICLE_LIGHT_FIELDS: Final = {
     "indicator_state": ("indicator", INDICATORS, "IndicatorState", {w: name for name, w in INDICATOR_NAMES.items()}),
     "brake_light_state": (
         "brake_light", BRAKE_LIGHTS, "BrakeLightState", {w: name for name, w in BRAKE_LIGHT_NAMES.items()},
@@ -62,7 +62,7 @@ def encode_ground_truths(
     parts = ("version_major", "version_minor", "version_patch")
     rows = {
         "version": _struct_array(
-            {name: np.full(n, part, np.uint32) for name, part in zip(parts, VERSION, strict=True)}
+            {name: np.full(n, part, np.uint32) for name, part in zip(parts, WRITTEN_OSI_VERSION, strict=True)}
         ),
         "timestamp": _struct_array({"seconds": seconds, "nanos": nanos.astype(np.uint32)}),
         "moving_object": pa.ListArray.from_arrays(pa.array(starts, pa.int32()), objects),
@@ -95,9 +95,9 @@ def moving_objects(
         base[vector] = _struct_array(numbers, np.logical_and.reduce([np.logical_or.reduce([*known.values()]), *must]))
     lights = {
         field: pa.array(
-            _codes_to_enum_numbers(codes[code], words, f"{_LIGHT_STATE}.{enum}", names), mask=codes[code] < 0
+            _codes_to_enum_numbers(codes[code], words, f"{_VEHICLE_LIGHT_STATE}.{enum}", names), mask=codes[code] < 0
         )
-        for field, (code, words, enum, names) in _LIGHT_FIELDS.items()
+        for field, (code, words, enum, names) in _VEHICLE_LIGHT_FIELDS.items()
     }
     lit = (codes["indicator"] >= 0) | (codes["brake_light"] >= 0)
     kinds = codes["actor_class"]

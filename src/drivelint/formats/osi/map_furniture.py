@@ -181,7 +181,7 @@ def _rows_of_light(signal_id: str, bulbs: Sequence[Any], map_lanes: _MapLanes, q
         [lane for bulb in bulbs for lane in map_lanes.assigned_lanes(bulb.classification, bulb.base)]
     )
     icons = {int(bulb.classification.icon) for bulb in bulbs}
-    arrows = icons - {kinds.FULL_LIGHT_ICON}
+    arrows = icons - {kinds.LIGHT_ICON_WITHOUT_SYMBOL}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS_BY_LIGHT_ICON.get(icon, ())}
     row = {
         "signal_id": signal_id,

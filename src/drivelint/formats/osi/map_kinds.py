@@ -38,7 +38,7 @@ CHANGING_VARIABILITIES: Final = frozenset({3, 5, 6})
 UNITS: Final[dict[int, str]] = _words_by_number("units")
 SPEED_UNITS_MPS: Final = {"km/h": 1 / 3.6, "mph": 0.44704}
 TURNS_BY_LIGHT_ICON: Final[dict[int, list[str]]] = _words_by_number("turns")
-FULL_LIGHT_ICON: Final = 2
+LIGHT_ICON_WITHOUT_SYMBOL: Final = 2
 LIGHT_KIND_BY_ICON: Final[dict[int, str]] = _words_by_number("light_kinds")
 
 

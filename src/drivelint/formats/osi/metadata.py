@@ -30,7 +30,7 @@ CONVERTED_LOG_LIBRARY: Final = "drivelint convert"
 TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
-EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
+EGO_DEPENDENT_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
 """Checks of findings that depend on the ego. Converted logs omit them; reading finds them again for the chosen ego."""
 COORDINATES_OSI_CANNOT_OMIT: Final = ("z_m",)
 """Coordinates that cannot be left out of an OSI vector. The record lists a coordinate that no state has."""
@@ -103,7 +103,9 @@ def metadata_records(trace: Trace, osi_ids: Mapping[str, int], *, as_recorded: b
 def ego_independent_quality(trace: Trace) -> pa.Table:
     """Return the rows of `quality` that do not depend on the ego; converted logs contain them."""
     rows = trace.tables["quality"]
-    return rows.filter(pa.array([check not in EGO_CHECK_IDS for check in rows["check_id"].to_pylist()], pa.bool_()))
+    return rows.filter(
+        pa.array([check not in EGO_DEPENDENT_CHECK_IDS for check in rows["check_id"].to_pylist()], pa.bool_())
+    )
 
 
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:

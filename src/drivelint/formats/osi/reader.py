@@ -29,7 +29,7 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
-from drivelint.formats.mcap.malformed import decode_readable, decode_without_malformed
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses, decode_without_malformed
 from drivelint.formats.mcap.reader import Container, LogMessage, message_batches
 from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.unread import UnreadTopics
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
 formats: Final = {"osi-file": ("ASAM OSI trace file", "the log's host vehicle")}
 takes_mapping: Final = False
-_READ_MESSAGES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
+_READABLE_MESSAGE_TYPES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESSAGE})
 
 
 def accepts(probe: Probe) -> bool:
@@ -84,7 +84,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
                 decoder.lights = first_message.lights
-            frames, readable = decode_readable(container, log_messages, decoder.frames)
+            frames, readable = decode_readable_and_record_losses(container, log_messages, decoder.frames)
             if frames is not None:
                 batches.append(frames)
             log_ns += [log_message.log_time_ns for log_message in readable]
@@ -133,7 +133,7 @@ def _message_type_to_read(
     truth_topics: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema
 ) -> str | None:
     """Return the message type of a channel; None if it is not read. Topics of ground truth are added to `truth_topics`."""
-    if schema.name not in _READ_MESSAGES:
+    if schema.name not in _READABLE_MESSAGE_TYPES:
         return None
     encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
     if channel.message_encoding != encoding or (encoding == "protobuf" and schema.encoding != encoding):
@@ -208,7 +208,7 @@ def read(probe: Probe) -> Recording:
                     end = log_message.offset + trace_file.LENGTH_FIELD_BYTES + len(log_message.data)
                     losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
-                    losses.bound_by_message(next(times))
+                    losses.bound_loss_times_by_message(next(times))
             if frames is not None:
                 batches.append(frames)
     if not batches:

@@ -22,7 +22,7 @@ OPEN_DRIVE_REFERENCE: Final = "net.asam.opendrive"
 """The type of an `ExternalReference` to an object in an OpenDRIVE map."""
 LIGHT_REFERENCE: Final = "drivelint.light"
 """drivelint's own type of an `ExternalReference`, from a bulb without an OpenDRIVE signal to its light."""
-VERSION: Final = (3, 7, 0)
+WRITTEN_OSI_VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 
 

@@ -17,8 +17,8 @@ from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-_LARGEST_BULB_DISTANCE_M: Final = 0.6  # largest distance between the centres of two bulbs of one light
-_LARGEST_BULB_ANGLE_RAD: Final = 0.2
+_LARGEST_DISTANCE_BETWEEN_BULBS_M: Final = 0.6  # largest distance between the centres of two bulbs of one light
+_LARGEST_ANGLE_BETWEEN_BULBS_RAD: Final = 0.2
 
 
 def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
@@ -64,4 +64,4 @@ def _are_adjacent_bulbs(a: Any, b: Any) -> bool:
     p, q = a.base.position, b.base.position
     apart = math.dist((p.x, p.y, p.z), (q.x, q.y, q.z))
     turned = float(wrap_angles(np.array(a.base.orientation.yaw - b.base.orientation.yaw)))
-    return apart <= _LARGEST_BULB_DISTANCE_M and abs(turned) <= _LARGEST_BULB_ANGLE_RAD
+    return apart <= _LARGEST_DISTANCE_BETWEEN_BULBS_M and abs(turned) <= _LARGEST_ANGLE_BETWEEN_BULBS_RAD

@@ -28,7 +28,7 @@ LENGTH_FIELD_BYTES: Final = 4
 """The number of bytes of a message's length field."""
 MOST_MESSAGE_BYTES: Final = 512 << 20
 """A longer message is impossible: even messages with a map are much shorter."""
-_FIRST_TAGS: Final = frozenset({0x0A, 0x12, 0x1A})
+_POSSIBLE_FIRST_MESSAGE_BYTES: Final = frozenset({0x0A, 0x12, 0x1A})
 """The possible first bytes of an OSI message: the tags of version, time stamp or an id (fields 1 to 3, length-delimited)."""
 
 
@@ -38,7 +38,7 @@ def may_be_osi_trace(head: bytes, size: int) -> bool:
     return (
         2 <= length <= min(size - LENGTH_FIELD_BYTES, MOST_MESSAGE_BYTES)
         and len(head) > LENGTH_FIELD_BYTES
-        and head[LENGTH_FIELD_BYTES] in _FIRST_TAGS
+        and head[LENGTH_FIELD_BYTES] in _POSSIBLE_FIRST_MESSAGE_BYTES
     )
 
 
@@ -69,7 +69,7 @@ def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Ite
         if (
             since is not None
             and len(content) > at + LENGTH_FIELD_BYTES
-            and content[at + LENGTH_FIELD_BYTES] not in _FIRST_TAGS
+            and content[at + LENGTH_FIELD_BYTES] not in _POSSIBLE_FIRST_MESSAGE_BYTES
         ):
             since -= 1  # no message begins here: a wrong length may have cut off the last message
         losses.lost_bytes.append(LostBytes(at, len(content), str(why), since))

@@ -14,7 +14,7 @@ from drivelint.arrays import floats
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import metadata
 from drivelint.formats.osi.encode import encode_ground_truths, encode_traffic_light, moving_objects
-from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
+from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, WRITTEN_OSI_VERSION, descriptor_set
 from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
@@ -32,7 +32,9 @@ STATES_PER_BATCH: Final = 200_000
 _MAX_OSI_ID: Final = (1 << 64) - 1
 
 
-def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_recorded: bool = False) -> int:
+def write_and_count_messages(
+    sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_recorded: bool = False
+) -> int:
     """Write the log, and return the number of ground-truth messages: one per time of any actor or signal, and per empty frame.
 
     The same trace and map give the same bytes. `map_source` must be UTF-8, as OSI's text fields are. A vector with an unknown x or y is
@@ -41,7 +43,7 @@ def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_reco
     osi_ids = assign_osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
     writer.start(library=metadata.CONVERTED_LOG_LIBRARY)
-    version = ".".join(map(str, VERSION))
+    version = ".".join(map(str, WRITTEN_OSI_VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
     for name, content in metadata.metadata_records(trace, osi_ids, as_recorded=as_recorded).items():

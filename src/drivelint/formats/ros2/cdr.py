@@ -50,7 +50,7 @@ _PADDING_BY_LENGTH: Final = [b"\0" * n for n in range(_MOST_ALIGNMENT_BYTES)]
 _TEXT_CODE = "S1"
 MOST_NAME_BYTES = 4096
 """The longest text that can be the name of a frame, a class or an actor. Each text of a batch takes as much memory as the longest."""
-_LONG_TEXTS: Final = frozenset({"opendrive"})
+_MEMBERS_WITH_LONG_TEXT: Final = frozenset({"opendrive"})
 """Members whose text is not a name, but a whole map."""
 _SIZE_BY_TYPE: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
 """Primitive or text type -> its size in bytes; 0: variable."""
@@ -88,12 +88,12 @@ class Table:
 
 
 @dataclass(frozen=True)
-class _AlignStep:
+class _AlignmentDecodeStep:
     to: int
 
 
 @dataclass
-class _BlockStep:
+class _FixedBlockDecodeStep:
     """A step over `size` bytes. `keep`: the values to read in them, as (path, numpy code, offset, count; None: a scalar)."""
 
     size: int = 0
@@ -101,7 +101,7 @@ class _BlockStep:
 
 
 @dataclass(frozen=True)
-class _NumbersStep:
+class _NumbersOrTextDecodeStep:
     """A step over a text, or a sequence whose items have `per_item` primitives each.
 
     `keep`: the path under which the text or the first `MAX_KEPT_NUMBERS` numbers (NaN if there are fewer) are stored; None: not stored.
@@ -112,15 +112,15 @@ class _NumbersStep:
     keep: str | None
 
     @property
-    def size(self) -> int:
+    def bytes_per_primitive(self) -> int:
         """The bytes of one primitive."""
         return int(self.code[1])
 
 
 @dataclass(frozen=True)
-class _ItemsStep:
+class _SequenceItemsDecodeStep:
     keep: str | None
-    program: list[Any]
+    decode_steps: list[Any]
 
 
 @dataclass
@@ -134,13 +134,13 @@ class _ValuePlaces:
     children: dict[int, _ValuePlaces] = field(default_factory=dict)
 
 
-class _Compiler:
+class _DecodeStepCompiler:
     """Compiles a message type to steps, with fixed offsets wherever the alignment is known: the cursor is `rest` modulo `modulus`."""
 
     def __init__(self, types: Types) -> None:
         self._types = types
 
-    def program(self, kind: str, tree: FieldTree | None) -> list[Any]:
+    def decode_steps(self, kind: str, tree: FieldTree | None) -> list[Any]:
         self._steps: list[Any] = []
         self._modulus, self._rest = 1, 0
         self._add_members(kind, tree, "")
@@ -162,7 +162,9 @@ class _Compiler:
                 for _ in range(1 if member.count is None else member.count):
                     if member.kind in TEXT_TYPES:
                         self._add_step(
-                            _NumbersStep(_TEXT_CODE, 1, path if keep_member and member.count is None else None)
+                            _NumbersOrTextDecodeStep(
+                                _TEXT_CODE, 1, path if keep_member and member.count is None else None
+                            )
                         )
                     else:
                         self._add_members(member.kind, subtree if member.count is None else None, f"{path}.")
@@ -170,11 +172,11 @@ class _Compiler:
     def _add_primitive(self, code: str, keep: str | None, count: int | None) -> None:
         size = int(code[1])
         if self._modulus < size:
-            self._steps.append(_AlignStep(size))
+            self._steps.append(_AlignmentDecodeStep(size))
             self._modulus, self._rest = size, 0
-        if not self._steps or not isinstance(self._steps[-1], _BlockStep):
-            self._steps.append(_BlockStep())
-        block: _BlockStep = self._steps[-1]
+        if not self._steps or not isinstance(self._steps[-1], _FixedBlockDecodeStep):
+            self._steps.append(_FixedBlockDecodeStep())
+        block: _FixedBlockDecodeStep = self._steps[-1]
         pad = -self._rest % size
         if keep is not None:
             block.keep.append((keep, code, block.size + pad, count))
@@ -185,15 +187,15 @@ class _Compiler:
     def _add_sequence(self, kind: str, path: str, subtree: FieldTree | None, *, keep_items: bool) -> None:
         keep = path if keep_items else None
         if kind in NUMPY_CODES:
-            self._add_step(_NumbersStep(NUMPY_CODES[kind], 1, keep))
+            self._add_step(_NumbersOrTextDecodeStep(NUMPY_CODES[kind], 1, keep))
             return
         sizes = [] if keep_items or kind in TEXT_TYPES else self._primitive_sizes(kind)
         if 0 not in sizes and len(set(sizes)) == 1:
-            self._add_step(_NumbersStep(f"u{sizes[0]}", len(sizes), None))
+            self._add_step(_NumbersOrTextDecodeStep(f"u{sizes[0]}", len(sizes), None))
         elif kind in TEXT_TYPES:
-            self._add_step(_ItemsStep(None, [_NumbersStep(_TEXT_CODE, 1, None)]))
+            self._add_step(_SequenceItemsDecodeStep(None, [_NumbersOrTextDecodeStep(_TEXT_CODE, 1, None)]))
         else:
-            self._add_step(_ItemsStep(keep, _Compiler(self._types).program(kind, subtree)))
+            self._add_step(_SequenceItemsDecodeStep(keep, _DecodeStepCompiler(self._types).decode_steps(kind, subtree)))
 
     def _primitive_sizes(self, kind: str) -> list[int]:
         """Return the sizes in bytes of all members of a type, with nested messages expanded; 0 for texts and sequences."""
@@ -220,11 +222,11 @@ class Decoder:
         self._path, self._name = path, schema.name
         types = parse_definition(path, schema.name, schema.data)
         self.constants = integer_constants(path, schema.name, schema.data)
-        self._program = _Compiler(types).program(short_type_name(schema.name), tree)
+        self._decode_steps = _DecodeStepCompiler(types).decode_steps(short_type_name(schema.name), tree)
 
     def table(self, log_messages: Sequence[LogMessage]) -> Table:
         """Decode a batch of messages. Errors: `TraceError` with topic and byte of the first message that does not fit the definition."""
-        return _MessageBatch(self._path, self._name, log_messages).table(self._program)
+        return _MessageBatch(self._path, self._name, log_messages).table(self._decode_steps)
 
 
 class _MessageBatch:
@@ -254,18 +256,18 @@ class _MessageBatch:
         order = BYTE_ORDERS[log_messages[0].data[1]] if log_messages else "<"
         self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
-    def table(self, program: list[Any]) -> Table:
+    def table(self, decode_steps: list[Any]) -> Table:
         messages = np.arange(len(self._log_messages))
-        cursor, walk = self._find_values(program, self._start.copy(), messages)
+        cursor, walk = self._find_values(decode_steps, self._start.copy(), messages)
         left = self._end - cursor
         self._check_within_message(cursor, self._end, messages)
         # writers may pad the end of a message
         if (left >= _MOST_ALIGNMENT_BYTES).any():
             i = int(np.argmax(left >= _MOST_ALIGNMENT_BYTES))
             raise self._misfit_error(i, f"has {left[i]} bytes more than its definition")
-        return self._table_of_values(program, walk)
+        return self._table_of_values(decode_steps, walk)
 
-    def _find_values(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, _ValuePlaces]:
+    def _find_values(self, decode_steps: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, _ValuePlaces]:
         """Run the steps from each cursor on, and return the moved cursors and the places of values.
 
         `cursor` is changed in place; `message`: the message of each cursor. A cursor that leaves its message is only noticed
@@ -273,61 +275,63 @@ class _MessageBatch:
         """
         walk = _ValuePlaces(len(cursor))
         end = self._end[message]
-        for i, step in enumerate(program):
-            if isinstance(step, _BlockStep):
+        for i, step in enumerate(decode_steps):
+            if isinstance(step, _FixedBlockDecodeStep):
                 if step.keep:
                     walk.start[i] = cursor.copy()
                 cursor += step.size
-            elif isinstance(step, _AlignStep):
+            elif isinstance(step, _AlignmentDecodeStep):
                 cursor += -cursor & (step.to - 1)
-            elif isinstance(step, _NumbersStep):
-                length = self._read_lengths(cursor, end, message, step.size * step.per_item)
-                if step.size > 4:  # a length is four bytes, and stands at a multiple of four
-                    cursor += np.where(length > 0, -cursor & (step.size - 1), 0)
+            elif isinstance(step, _NumbersOrTextDecodeStep):
+                length = self._read_lengths(cursor, end, message, step.bytes_per_primitive * step.per_item)
+                if step.bytes_per_primitive > 4:  # a length is four bytes, and stands at a multiple of four
+                    cursor += np.where(length > 0, -cursor & (step.bytes_per_primitive - 1), 0)
                 if step.keep is not None:
                     if step.code == _TEXT_CODE:
-                        self._check_names(step.keep, length, message)
+                        self._check_name_lengths(step.keep, length, message)
                     walk.start[i], walk.length[i] = cursor.copy(), length
-                cursor += length * (step.size * step.per_item)
+                cursor += length * (step.bytes_per_primitive * step.per_item)
             else:
                 parts = self._find_item_values(step, cursor, end, message)
                 if step.keep is not None:
                     walk.children[i] = _join_item_places(parts, [0] * len(parts), np.arange(len(cursor)))
         return cursor, walk
 
-    def _find_item_values(self, step: _ItemsStep, cursor: Offsets, end: Offsets, message: Rows) -> list[_ValuePlaces]:
+    def _find_item_values(
+        self, step: _SequenceItemsDecodeStep, cursor: Offsets, end: Offsets, message: Rows
+    ) -> list[_ValuePlaces]:
         """Run the steps of an item for the first items of all sequences, then for the second items, and so on; return these walks."""
         length = self._read_lengths(cursor, end, message, 1)
         parts: list[_ValuePlaces] = []
         for k in range(int(length.max(initial=0))):
             active = np.flatnonzero(length > k)
-            after, part = self._find_values(step.program, cursor[active], message[active])
+            after, part = self._find_values(step.decode_steps, cursor[active], message[active])
             cursor[active] = after
             part.parent = active
             parts.append(part)
         # without items, an empty walk still yields a table with all columns
-        return parts or [self._find_values(step.program, cursor[:0].copy(), message[:0])[1]]
+        return parts or [self._find_values(step.decode_steps, cursor[:0].copy(), message[:0])[1]]
 
-    def _table_of_values(self, program: list[Any], walk: _ValuePlaces) -> Table:
+    def _table_of_values(self, decode_steps: list[Any], walk: _ValuePlaces) -> Table:
         """Return the table of the wanted fields, read at the places in `walk`."""
         table = Table(walk.n, parent=walk.parent, where=f"{self._path}: the definition of {self._name}")
-        for i, step in enumerate(program):
-            if isinstance(step, _BlockStep):
+        for i, step in enumerate(decode_steps):
+            if isinstance(step, _FixedBlockDecodeStep):
                 for path, code, offset, count in step.keep:
                     table.columns[path] = self._values_at(code, walk.start[i] + offset, count)
-            elif isinstance(step, _NumbersStep) and step.keep is not None:
+            elif isinstance(step, _NumbersOrTextDecodeStep) and step.keep is not None:
                 table.columns[step.keep] = self._sequence_values(step, walk.start[i], walk.length[i])
-            elif isinstance(step, _ItemsStep) and step.keep is not None:
-                table.children[step.keep] = self._table_of_values(step.program, walk.children[i])
+            elif isinstance(step, _SequenceItemsDecodeStep) and step.keep is not None:
+                table.children[step.keep] = self._table_of_values(step.decode_steps, walk.children[i])
         return table
 
-    def _sequence_values(self, step: _NumbersStep, start: Offsets, length: Offsets) -> NDArray[Any]:
+    def _sequence_values(self, step: _NumbersOrTextDecodeStep, start: Offsets, length: Offsets) -> NDArray[Any]:
         if step.code == _TEXT_CODE:
             return self._texts(start, length)
         first = np.full((len(start), MAX_KEPT_NUMBERS), np.nan)
         for k in range(MAX_KEPT_NUMBERS):
             has = np.flatnonzero(length > k)
-            first[has, k] = self._values_at(step.code, start[has] + k * step.size, None)
+            first[has, k] = self._values_at(step.code, start[has] + k * step.bytes_per_primitive, None)
         return first
 
     def _values_at(self, code: str, at: Offsets, count: int | None) -> NDArray[Any]:
@@ -356,10 +360,10 @@ class _MessageBatch:
         letters = np.where(place < length[:, None], self._bytes[index], np.uint8(0))
         return np.ascontiguousarray(letters).view(f"S{width}").reshape(-1)
 
-    def _check_names(self, path: str, length: Offsets, message: Rows) -> None:
+    def _check_name_lengths(self, path: str, length: Offsets, message: Rows) -> None:
         """Check that texts are short enough to be names. One long text would multiply the memory of its whole batch."""
         beyond = length > MOST_NAME_BYTES
-        if beyond.any() and path.rpartition(".")[2] not in _LONG_TEXTS:
+        if beyond.any() and path.rpartition(".")[2] not in _MEMBERS_WITH_LONG_TEXT:
             i = int(np.argmax(beyond))
             raise self._misfit_error(
                 int(message[i]), f"has {length[i]} bytes in {path}, where a name has at most {MOST_NAME_BYTES}"

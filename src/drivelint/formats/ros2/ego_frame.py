@@ -9,7 +9,7 @@ import numpy as np
 from drivelint.drive.trace import ACTOR_CLASSES
 from drivelint.formats.coordinate_frames import (
     FIXED_FRAME_NAMES,
-    MAX_INTERPOLATION_NS,
+    MAX_INTERPOLATED_GAP_NS,
     Poses,
     clean_frame_name,
     unit_quaternions,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 EGO_FRAMES: Final = ("base_link", "base_footprint")
 """The names of the vehicle's own frame by REP 105, best first; a prefix such as `ego/` may precede them."""
 _MOST_LISTED_NAMES: Final = 4
-_MOST_DROPPED_PERIODS: Final = 2.5
+_MOST_DROPPED_PERIODS_AT_EACH_END: Final = 2.5
 """The recordings of two topics that go on to the end end at most so many periods of the slower one apart."""
 
 
@@ -107,7 +107,7 @@ def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, m
     """Return the rows without those at the ends for which a transform above is not recorded yet or any more.
 
     The transforms of a chain are sent at different rates, so that their recordings begin and end at different times. Longer ends than
-    that explains, or than `most_dropped_ns` or `MAX_INTERPOLATION_NS`, stay: there the ego drives on, but is not placed.
+    that explains, or than `most_dropped_ns` or `MAX_INTERPOLATED_GAP_NS`, stay: there the ego drives on, but is not placed.
     """
     if not len(rows):
         return rows
@@ -118,7 +118,7 @@ def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, m
         return rows
     above = [transform for transform in frames.chain(frame, fixed) or () if not transform.static]
     period_ns = max((float(np.median(np.diff(each.t_ns))) for each in above if len(each.t_ns) > 1), default=0.0)
-    most_ns = min(most_dropped_ns, MAX_INTERPOLATION_NS, _MOST_DROPPED_PERIODS * period_ns)
+    most_ns = min(most_dropped_ns, MAX_INTERPOLATED_GAP_NS, _MOST_DROPPED_PERIODS_AT_EACH_END * period_ns)
     first, last = placed.min(), placed.max()
     kept = np.ones(len(rows), np.bool_)
     if first - t_ns.min() <= most_ns:

@@ -10,7 +10,7 @@ import numpy as np
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag import missing_message_findings
 from drivelint.formats.mcap.losses import lost_times_of_parts
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
@@ -25,8 +25,8 @@ from drivelint.formats.ros2.messages import (
     OLD_LIGHT_GROUPS,
     TRANSFORMS,
 )
-from drivelint.formats.ros2.objects import KINDS_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
-from drivelint.formats.ros2.silence import KINDS_SENT_WITHOUT_OBJECTS, silences
+from drivelint.formats.ros2.objects import MESSAGE_TYPES_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
+from drivelint.formats.ros2.silence import MESSAGE_TYPES_SENT_EVEN_WITHOUT_OBJECTS, silences
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.sqlite_bag.reader import CONVERSION_REMEDY, SqliteFile
 from drivelint.phrases import name_list
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.recorded_poses import RecordedPoses
 
-LIGHT_KINDS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
+TRAFFIC_LIGHT_MESSAGE_TYPES: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
 Topics = dict[str, list[Any]]
 """Topic -> the decoded content of each batch of its messages."""
@@ -78,7 +78,7 @@ class Log:
             for kind, log_messages in message_batches(container, partial(self._kind_if_read, file, decoders)):
                 channel = log_messages[0].channel
                 decoder = decoders[channel.schema_id]
-                table, readable = decode_readable(container, log_messages, decoder.table)
+                table, readable = decode_readable_and_record_losses(container, log_messages, decoder.table)
                 if table is None:
                     continue
                 log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
@@ -157,7 +157,7 @@ class Log:
             if topic in self.n_detections:
                 raise TraceError(
                     f"{self.path}: the detections on topic {topic!r} have no ids, so they form no tracks: choose a topic of "
-                    f"{' or '.join(KINDS_OF_SAME_OBJECTS)}"
+                    f"{' or '.join(MESSAGE_TYPES_OF_SAME_OBJECTS)}"
                 )
             if topic not in read_topics:
                 raise TraceError(
@@ -180,7 +180,7 @@ class Log:
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
         """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""
-        steady = {topic for kind in KINDS_SENT_WITHOUT_OBJECTS for topic in self.topics.get(kind, ())}
+        steady = {topic for kind in MESSAGE_TYPES_SENT_EVEN_WITHOUT_OBJECTS for topic in self.topics.get(kind, ())}
         for topic in sorted(steady.intersection(objects)):
             sent_ns, own_ns = (self.times_of_topics(topics, own_times=False) for topics in ([topic], odometry))
             yield from silences(topic, sent_ns, own_ns)
@@ -215,7 +215,7 @@ class Log:
 
 def _batch_content(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
     """Return the content of a batch: rows for road users, group states for traffic lights, otherwise fields and log times."""
-    if kind in LIGHT_KINDS:
+    if kind in TRAFFIC_LIGHT_MESSAGE_TYPES:
         return traffic_lights.group_states(table, log_ns, decoder.constants)
     if kind not in OBJECT_CONVERTERS:
         return table, log_ns
@@ -226,7 +226,7 @@ def _batch_content(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> 
 
 def _default_topic(topics_by_kind: dict[str, Topics]) -> str | None:
     """Return the topic to read by default: the only topic of its type, or the type's usual topic; None if it is not clear."""
-    bodies = len(topics_by_kind.keys() & set(KINDS_OF_SAME_OBJECTS))
+    bodies = len(topics_by_kind.keys() & set(MESSAGE_TYPES_OF_SAME_OBJECTS))
     if len(topics_by_kind) > max(bodies, 1):
         return None
     for kind, topics in topics_by_kind.items():

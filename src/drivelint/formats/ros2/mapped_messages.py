@@ -18,7 +18,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import clean_frame_name
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.bag import missing_message_findings
-from drivelint.formats.mcap.malformed import decode_readable
+from drivelint.formats.mcap.malformed import decode_readable_and_record_losses
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.ros2 import topic_mapping
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.topic_mapping import MappedTopic, RosMappingFile
     from drivelint.formats.ros2.types import Types
 
-_TOPICS_APART_NS: Final = 1_000_000_000
+_MOST_TIME_BETWEEN_TOPICS_NS: Final = 1_000_000_000
 _MOST_PROPOSED_FIELDS: Final = 500
 _STAMP_MEMBERS: Final = ("sec", "nanosec", "nsec")
 
@@ -93,7 +93,7 @@ def read(probe: Probe) -> Recording:
         )
     recording.findings += messages.findings
     recording.lost_times += messages.lost_times
-    recording.frames_ns, recording.ends_apart_ns = messages.message_times(), _TOPICS_APART_NS
+    recording.frames_ns, recording.ends_apart_ns = messages.message_times(), _MOST_TIME_BETWEEN_TOPICS_NS
     first = int(recording.frames_ns.min())
     recording.utc_start_ns = first if first >= EARLIEST_UTC_NS else None
     recording.format = file.stem
@@ -127,7 +127,7 @@ class _MappedMessages:
 
         for topic, log_messages in message_batches(container, mapped_topic):
             decoder = decoders[topic, log_messages[0].channel.schema_id]
-            table, _ = decode_readable(container, log_messages, decoder.table)
+            table, _ = decode_readable_and_record_losses(container, log_messages, decoder.table)
             if table is not None:
                 self._parts.setdefault(topic, []).append((table, self._times(topic, table)))
         self._containers.append(container)
@@ -142,7 +142,7 @@ class _MappedMessages:
         if (
             times
             and max(t_ns.min() for t_ns in times.values())
-            > min(t_ns.max() for t_ns in times.values()) + _TOPICS_APART_NS
+            > min(t_ns.max() for t_ns in times.values()) + _MOST_TIME_BETWEEN_TOPICS_NS
         ):
             raise TraceError(
                 f"{self._path}: the times of {name_list(sorted(times))} do not overlap: name other fields with time"

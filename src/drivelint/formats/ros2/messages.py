@@ -38,7 +38,7 @@ HEADER_FIELDS: Final[FieldTree] = {"stamp": STAMP_FIELDS, "frame_id": None}
 XYZ_FIELDS: Final[FieldTree] = {"x": None, "y": None, "z": None}
 POSE_FIELDS: Final[FieldTree] = {"position": XYZ_FIELDS, "orientation": {**XYZ_FIELDS, "w": None}}
 _HYPOTHESIS_FIELDS: Final[FieldTree] = {"class_id": None, "score": None}
-VEHICLE_LENGTHS: Final = (
+VEHICLE_LENGTH_NAMES: Final = (
     "wheel_base", "front_overhang", "rear_overhang", "wheel_tread", "left_overhang", "right_overhang",
 )  # fmt: skip
 """The parameters of Autoware's `vehicle_info`, in metres, that state a vehicle's box relative to its rear axle."""
@@ -130,7 +130,7 @@ MESSAGE_TYPES: Final[dict[str, MessageType]] = {
             },
         },
     ),
-    VEHICLE_DIMENSIONS: MessageType(EGO_SIZE_ROLE, "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTHS, "height"))),
+    VEHICLE_DIMENSIONS: MessageType(EGO_SIZE_ROLE, "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTH_NAMES, "height"))),
     LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",

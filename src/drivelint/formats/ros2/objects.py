@@ -198,6 +198,6 @@ OBJECT_CONVERTERS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
     VISION_DETECTIONS: _vision_rows,
 }
 """Message type -> the function that converts its messages to rows. `log_ns` of a row is at first the index of its message."""
-KINDS_OF_SAME_OBJECTS: Final = (PREDICTED_OBJECTS, TRACKED_OBJECTS)
+MESSAGE_TYPES_OF_SAME_OBJECTS: Final = (PREDICTED_OBJECTS, TRACKED_OBJECTS)
 """Message types in which one perception system sends the same objects, the preferred type first: predictions have headings in the
 direction of motion, while those of tracks may be reversed."""

@@ -22,7 +22,7 @@ from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.ego_frame import drop_unplaced_ends, ego_rows_or_reason
-from drivelint.formats.ros2.log import LIGHT_KINDS, Log
+from drivelint.formats.ros2.log import TRAFFIC_LIGHT_MESSAGE_TYPES, Log
 from drivelint.formats.ros2.merge import DEFAULT_EGO_ID, FORMAT, SQLITE_FORMAT, merge_ego
 from drivelint.formats.ros2.messages import (
     CARLA_OBJECTS,
@@ -38,13 +38,13 @@ from drivelint.formats.ros2.messages import (
     VEHICLE_DIMENSIONS,
     WORLD_INFO,
 )
-from drivelint.formats.ros2.objects import KINDS_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
+from drivelint.formats.ros2.objects import MESSAGE_TYPES_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
-    choose_clock,
     distinct_values,
     frame_times_and_start,
     join_batches,
+    set_times_and_return_are_own_times,
     states_in_fixed_frame,
 )
 from drivelint.formats.ros2.types import message_kind
@@ -86,7 +86,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     findings = log.findings
     findings += bag.lone_part_findings(path)
     findings += [] if objects else [_no_road_users_finding(log)]
-    own_times = choose_clock(parts, findings)
+    own_times = set_times_and_return_are_own_times(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
     for topic in objects:
         parts[topic] = _drop_rows_without_ids(parts[topic], topic, log)
@@ -142,7 +142,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
 
 def _add_signals(recording: Recording, log: Log, *, own_times: bool) -> None:
     """Add the states of the traffic lights, if the log has them."""
-    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
+    for topic, batches in log.select_topic(TRAFFIC_LIGHT_MESSAGE_TYPES, "traffic lights").items():
         t_ns = recording.states.t_ns
         span_ns = int(t_ns.min()), int(t_ns.max())
         recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
@@ -175,7 +175,7 @@ def _nothing_to_read_error(path: Path, log: Log) -> TraceError:
 
 def _missing_ego_notes(log: Log) -> list[str]:
     """Return a note if a bag of Autoware's road users has neither odometry nor transforms of its own vehicle."""
-    if not log.why_no_ego or log.topics.keys().isdisjoint(KINDS_OF_SAME_OBJECTS):
+    if not log.why_no_ego or log.topics.keys().isdisjoint(MESSAGE_TYPES_OF_SAME_OBJECTS):
         return []
     note = (
         f"no {ODOMETRY}, and {log.why_no_ego}: the vehicle that recorded the bag is not among the actors: "
@@ -252,7 +252,7 @@ def _no_road_users_finding(log: Log) -> QualityFinding:
     if n:
         cause = (
             f"the only road users of this log, on {name_list(sorted(log.n_detections))}, are detections without ids, which form no tracks: "
-            f"record {' or '.join(KINDS_OF_SAME_OBJECTS)} too"
+            f"record {' or '.join(MESSAGE_TYPES_OF_SAME_OBJECTS)} too"
         )
     else:
         cause += (

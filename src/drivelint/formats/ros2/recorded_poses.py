@@ -47,7 +47,7 @@ class RecordedPoses:
 
     `stamp_ns`: the message's own time, if it has one (`stamped`); `log_ns`: the time in the container. `ids` and `frames` are bytes.
     `along`: velocity and acceleration are along the actor's own axes, otherwise along those of its frame. `faces`: the front is
-    known, not only the axis. `classes`: indices in `ACTOR_CLASSES`; -1: unknown. `choose_clock` sets `t_ns`.
+    known, not only the axis. `classes`: indices in `ACTOR_CLASSES`; -1: unknown. `set_times_and_return_are_own_times` sets `t_ns`.
     `at_ns`: the time at which a moving frame is looked up; None: `t_ns`. `outlined`: the size is that of the box around a
     polygon. For entities of a scene: `lifetime_ns` (0: unlimited); `locked`: the entity moves with its frame.
     """
@@ -219,7 +219,7 @@ def _correct_velocity_frame(states: States, swapped: Vectors, along: Mask, topic
     return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
 
 
-def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
+def set_times_and_return_are_own_times(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
     """Set `t_ns` of the rows to the messages' own times or to log times; return whether own times are used.
 
     Own times are used if all messages have one, they advance, and the topics overlap. Otherwise a finding states the reason.

@@ -12,7 +12,7 @@ from drivelint.drive.trace import LostTime
 if TYPE_CHECKING:
     from drivelint.arrays import Times
 
-KINDS_SENT_WITHOUT_OBJECTS: Final = frozenset({
+MESSAGE_TYPES_SENT_EVEN_WITHOUT_OBJECTS: Final = frozenset({
     "autoware_perception_msgs/PredictedObjects", "autoware_perception_msgs/TrackedObjects", "derived_object_msgs/ObjectArray",
 })  # fmt: skip
 """Message types whose senders also send messages without objects. A sender of detections may send nothing if there is no actor."""

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Times
     from drivelint.formats.ros2.cdr import Table
 
-LONGEST_HOLD_NS: Final = 5_000_000_000
+LONGEST_LIGHT_STATE_VALIDITY_NS: Final = 5_000_000_000
 """Without a new message, a state is valid for at most this time, as in Autoware for lights that roadside units report."""
-ELEMENT_NUMBERS: Final = {
+LIGHT_ELEMENT_NUMBERS: Final = {
     "RED": 1, "AMBER": 2, "GREEN": 3,
     "CIRCLE": 1, "LEFT_ARROW": 2, "RIGHT_ARROW": 3, "UP_ARROW": 4, "UP_LEFT_ARROW": 5, "UP_RIGHT_ARROW": 6, "DOWN_ARROW": 7,
     "DOWN_LEFT_ARROW": 8, "DOWN_RIGHT_ARROW": 9,
@@ -58,13 +58,13 @@ def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[st
     """
     path, name = next((pair for pair in _GROUP_AND_ID_FIELDS if pair[0] in table.children), _GROUP_AND_ID_FIELDS[0])
     groups = table.items(path)
-    state = _states_of_groups(groups, _element_numbers(constants))
+    state = _states_of_groups(groups, _light_element_numbers(constants))
     return GroupStates(stamps(table, "stamp")[0], log_ns, groups.parent, groups.column(name).astype(np.int64), state)
 
 
-def _element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
+def _light_element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
     needed = {*_COLOURS, "CIRCLE", "SOLID_OFF", "SOLID_ON", "FLASHING"}
-    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), ELEMENT_NUMBERS)
+    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), LIGHT_ELEMENT_NUMBERS)
 
 
 def _states_of_groups(groups: Table, number: Mapping[str, int]) -> Codes:
@@ -126,7 +126,7 @@ def signal_states(
     group, state = (np.concatenate([getattr(batch, name) for batch in batches]) for name in ("group", "state"))
     since, until = span_ns
     usable = (t_ns != 0) | (until < EARLIEST_UTC_NS)
-    if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
+    if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_LIGHT_STATE_VALIDITY_NS < since:
         why = (
             f"{topic}: the messages have other times than the states of the drive: the states of the lights are unknown"
         )
@@ -159,13 +159,13 @@ def signal_states(
 
 
 def _end_times(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
-    """Return the time at which each state ends: at the next message, but at most `LONGEST_HOLD_NS` after its own.
+    """Return the time at which each state ends: at the next message, but at most `LONGEST_LIGHT_STATE_VALIDITY_NS` after its own.
 
     If the next message is in time and has the group, the end is the far future. Rows are sorted by group and step.
     `times`: the sorted times of the messages; `step`: each row's index in `times`.
     """
     following = np.append(times[1:], np.iinfo(np.int64).max)[step]
     again = np.append((group[1:] == group[:-1]) & (step[1:] <= step[:-1] + 1), False)
-    stale = times[step] + LONGEST_HOLD_NS
+    stale = times[step] + LONGEST_LIGHT_STATE_VALIDITY_NS
     end = np.where(again, np.iinfo(np.int64).max, following)
     return np.where(following > stale, np.minimum(end, stale), end)

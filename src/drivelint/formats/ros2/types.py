@@ -27,11 +27,11 @@ TEXT_TYPES: Final = ("string", "wstring")
 SEQUENCE: Final = -1
 _STAMP_TYPES: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 """Types of times that a definition may use without containing their definition."""
-_KINDS_WITH_OLDER_MEANING: Final = frozenset({"autoware_auto_perception_msgs/TrafficSignalArray"})
+_OLD_MESSAGE_TYPES_WITHOUT_NEW_EQUIVALENT: Final = frozenset({"autoware_auto_perception_msgs/TrafficSignalArray"})
 """Messages of older packages whose meaning differs from the newer message with the same name: these lights have the ids of lines
 in the map, not of regulatory elements."""
 _NOT_UNDERSTOOD_TEXT: Final = "has a line that is not understood: {!r}"
-_MOST_DIGITS: Final = 18
+_MOST_ARRAY_LENGTH_DIGITS: Final = 18
 """The most digits of the length of an array."""
 _CONSTANT_PATTERN = re.compile(r"^[a-z]\w*\s+(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>-?\d+)$")
 _SEPARATOR_PATTERN = re.compile(r"^={10,}\s*$", re.MULTILINE)
@@ -64,7 +64,7 @@ Types = dict[str, list[Field]]
 def message_kind(schema: str) -> str:
     """Return the message type `package/Name` of a schema; for Autoware's older packages, the newer type with the same fields."""
     name = short_type_name(schema)
-    return name if name in _KINDS_WITH_OLDER_MEANING else name.replace("autoware_auto_", "autoware_")
+    return name if name in _OLD_MESSAGE_TYPES_WITHOUT_NEW_EQUIVALENT else name.replace("autoware_auto_", "autoware_")
 
 
 def short_type_name(name: str) -> str:
@@ -131,7 +131,7 @@ def _fields(body: str, make_error: MakeError) -> Iterator[Field]:
         count = None
         if match["array"]:
             bounded = match["count"] == "" or "<=" in match["array"]
-            if not bounded and len(match["count"]) > _MOST_DIGITS:
+            if not bounded and len(match["count"]) > _MOST_ARRAY_LENGTH_DIGITS:
                 raise make_error(_NOT_UNDERSTOOD_TEXT.format(line[:80]))
             count = SEQUENCE if bounded else int(match["count"])
         yield Field(match["name"], match["type"], count)
@@ -156,16 +156,16 @@ def _full_type_name(kind: str, container: str, defined: set[str], make_error: Ma
 def _refuse_loops(name: str, types: Types, make_error: MakeError) -> None:
     checked_kinds: set[str] = set()
 
-    def visit(kind: str, inside: tuple[str, ...]) -> None:
+    def refuse_type_inside_itself(kind: str, inside: tuple[str, ...]) -> None:
         if kind in inside:
             raise make_error(f"contains itself ({kind}): record it again")
         if kind in checked_kinds:
             return
         for field in types.get(kind, []):
-            visit(field.kind, (*inside, kind))
+            refuse_type_inside_itself(field.kind, (*inside, kind))
         checked_kinds.add(kind)
 
-    visit(name, ())
+    refuse_type_inside_itself(name, ())
 
 
 def _refuse_giant_arrays(name: str, types: Types, make_error: MakeError) -> None:

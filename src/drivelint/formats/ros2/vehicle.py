@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from drivelint.drive.trace import QualityFinding
-from drivelint.formats.ros2.messages import VEHICLE_LENGTHS
+from drivelint.formats.ros2.messages import VEHICLE_LENGTH_NAMES
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def _lengths_by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]
 def _length_parameters(items: Table) -> Iterator[tuple[int, str, float]]:
     """Yield row, name and value of each parameter that is a length of the vehicle."""
     names, kind = items.column("name"), items.column("value.type")
-    wanted = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTHS, _HEIGHT_NAME)]) & np.isin(
+    wanted = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTH_NAMES, _HEIGHT_NAME)]) & np.isin(
         kind, (_WHOLE, _DOUBLE)
     )
     for i in np.flatnonzero(wanted).tolist():
@@ -107,16 +107,16 @@ def _lengths_by_topic(dimensions: Iterable[tuple[str, Table]]) -> dict[str, dict
     found: dict[str, dict[str, float]] = {}
     for topic, table in dimensions:
         if table.n:
-            found[topic] = {name: float(table.column(name)[-1]) for name in VEHICLE_LENGTHS}
+            found[topic] = {name: float(table.column(name)[-1]) for name in VEHICLE_LENGTH_NAMES}
             found[topic][_HEIGHT_NAME] = float(table.columns.get("height", np.full(table.n, nan))[-1])
     return found
 
 
 def _box_of_lengths(source: str, lengths: Mapping[str, float]) -> VehicleBox | None:
     """Return the box with these lengths; None if a length is missing, not a number, or implausible."""
-    if not lengths.keys() >= set(VEHICLE_LENGTHS):
+    if not lengths.keys() >= set(VEHICLE_LENGTH_NAMES):
         return None
-    base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTHS)
+    base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTH_NAMES)
     length, width = front + base + rear, left + tread + right
     if not (0.0 < length < _MOST_BOX_M and 0.0 < width < _MOST_BOX_M and min(base, tread) > 0.0):
         return None

@@ -105,7 +105,7 @@ class SqliteFile(Container):
                 last = row
                 channel = self.channels[number]
                 self.counts.add(number, t_ns)
-                self.losses.bound_by_message(t_ns)
+                self.losses.bound_loss_times_by_message(t_ns)
                 is_assumed = self.schemas[channel.schema_id].name in self.assumed_kinds
                 yield (AssumedDefinitionMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
         if is_repaired:
