@@ -61,7 +61,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
             found += _write_findings_of_drive(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
-            "evidence": contents.FORMAT_VERSION,
+            "evidence": contents.AUDIT_FORMAT_VERSION,
             **tables.evidence_values_of_audit(pack_folder, con, audit, rules.to_pylist()),
             "packed_with": contents.library_versions(),
             "mappings": inputs.mappings,
@@ -69,7 +69,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
             "inputs": {"traces": inputs.traces, "maps": inputs.maps} if request.with_inputs else None,
             "findings": sorted(found, key=lambda row: order[row["key"], row["finding_id"]]),
         }
-    told["findings_left_out"] = told["n_findings"] - len(found)
+    told["findings_left_out"] = 0 if request.findings is None else max(told["n_findings"] - request.findings, 0)
     there = {path.relative_to(request.folder).parts[0] for path in request.folder.rglob("*") if path.is_file()}
     told["left_out"] = sorted(name for name in there - {Path(name).parts[0] for name in names} if name[0] != ".")
     (pack_folder / contents.EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
