@@ -38,7 +38,11 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> CopiedFleet:
     drives = fleet.write(folder / "fleet", 6, seed=12)
     logs = folder / "fleet/logs"
     kept = sorted(drives.planted)
-    names = [*kept, *(f"copy-{n}.parquet" for n in range(N_COPIES)), *(f"refused-{n}.parquet" for n in range(N_REFUSED))]
+    names = [
+        *kept,
+        *(f"copy-{n}.parquet" for n in range(N_COPIES)),
+        *(f"refused-{n}.parquet" for n in range(N_REFUSED)),
+    ]
     for name in names[2:5]:
         shutil.copyfile(logs / kept[0], logs / name)
     for name in names[5:]:
