@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import pyarrow.parquet as pq
 import pytest
@@ -15,9 +16,6 @@ from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
 from tests.pack.audited import table_of
 from tests.pack.packed import make_key, make_pack
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 pytestmark = pytest.mark.ci
 N_COPIES, N_REFUSED = 3, 2
@@ -70,6 +68,23 @@ def test_copies_are_not_said_to_be_judged_or_without_findings(copied: CopiedFlee
     copies = f"{N_COPIES} logs with the content of another log, counted once: not judged again; their rows have the hashes in the receipts"
     assert copies in found.notes
     assert not [note for note in found.notes if "without a finding" in note]
+
+
+def test_of_copies_in_a_folder_the_log_with_the_name_is_judged_again(copied: CopiedFleet, tmp_path: Path) -> None:
+    pack = make_pack(copied.audit, tmp_path / "pack", make_key(tmp_path, "ours")[0])
+    logs = copied.audit.parent / "fleet/logs"
+    (first,) = [
+        row["log"]
+        for row in pq.read_table(table_of(pack, "receipts")).to_pylist()
+        if row["key"] == copied.evidence["findings"][0]["key"]
+    ]
+    found = verify(VerifyRequest(pack, traces=(logs,)))
+    assert not found.problems
+    assert f"2 of {2 + N_REFUSED} drives judged again: the same bytes" in found.sentence
+    name = Path(first).name
+    renamed = shutil.copy(logs / name, tmp_path / "renamed.parquet")
+    (problem,) = verify(VerifyRequest(pack, traces=(Path(renamed),))).problems
+    assert problem.subject.endswith(f"renamed.parquet was named {name} when it was judged: give it this name")
 
 
 def test_the_line_of_pack_counts_as_the_audit_does(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from itertools import pairwise
 from operator import index
-from pathlib import Path
+from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -251,22 +251,28 @@ def judge_settings(audit: Audit) -> JudgeSettings:
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
-def given_logs_by_sha256(
+def given_logs_by_key(
     con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]
 ) -> dict[str, Path]:
-    """Return hash -> path of the given logs that belong to a drive with one of these findings. Folders are searched.
+    """Return key of a drive -> path of its given log, for the drives with these findings. Folders are searched.
 
-    Files of other sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
+    If several given logs have the hash of the drive's log, the one with its name is taken: the name is a part of the rows. Files of other
+    sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
     """
     if not log_paths:
         return {}
     keys = sorted({row["key"] for row in findings})
-    sql = "SELECT log_sha256, size FROM receipts WHERE list_contains($keys, key)"
+    sql = "SELECT key, log, log_sha256, size FROM receipts WHERE list_contains($keys, key)"
     receipts = con.execute(sql, {"keys": keys}).fetchall()
-    wanted, sizes = ({row[i] for row in receipts} for i in (0, 1))
+    sizes = {size for _, _, _, size in receipts}
     there = [path for path in expand_traces(list(map(str, log_paths))) if why_unreadable(path) is None]
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
-    found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
+    by_digest = group_rows(likely, lambda path: identify(path).sha256)
+    found = {
+        key: max(by_digest[digest], key=lambda path: path.name == PurePath(log).name)
+        for key, log, digest, _ in receipts
+        if digest in by_digest
+    }
     if not found:
         raise UsageError(f"--trace {log_paths[0]}: no log there belongs to a drive with a finding in the pack")
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
@@ -101,10 +102,10 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
             return [Problem("result not readable", str(error))], "", "", []
         if wrong:
             return wrong, "not judged again", "", []
-        given = tables.given_logs_by_sha256(con, findings, request.traces)
+        given = tables.given_logs_by_key(con, findings, request.traces)
         try:
             for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-                wrong += _problems_of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+                wrong += _problems_of_drive(pack, drive, given.get(drive.key), request.map)
         except msgspec.MsgspecError as error:
             wrong.append(Problem("receipts not readable", str(error)))
         return wrong, _judged_again_phrase(pack), outcome, _notes_on_unexamined(pack)
@@ -194,7 +195,9 @@ def _problems_of_drive(
     wrong = (
         []
         if _has_same_rows_as_audit(pack, drive, fresh)
-        else [Problem("result not reproduced", f"the rows of {_drive_name_and_key(drive)}")]
+        else [
+            Problem("result not reproduced", f"the rows of {_drive_name_and_key(drive)}{_renaming_phrase(drive, log)}")
+        ]
     )
     place = f"{FINDINGS_FOLDER}/{drive.key}"
     files = {
@@ -268,6 +271,12 @@ def _has_same_pyarrow(pack: _AuditPack) -> bool:
 
 def _drive_name_and_key(drive: tables.PackedDrive) -> str:
     return f"{drive.receipt['drive_id']} ({drive.key})"
+
+
+def _renaming_phrase(drive: tables.PackedDrive, log: Path | None) -> str:
+    """Return a phrase that says that a given log has another name than when it was judged; '' if it has not."""
+    name = PurePath(drive.receipt["log"]).name
+    return "" if log is None or log.name == name else f": {log} was named {name} when it was judged: give it this name"
 
 
 def _judged_again_phrase(pack: _AuditPack) -> str:

@@ -53,10 +53,10 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
         loaded_rules = reproduction.rules_of_table(rules, dirs)
         copy_rule_files(loaded_rules, pack_folder)
         inputs = _InputCopier(pack_folder, with_inputs=request.with_inputs)
-        given = tables.given_logs_by_sha256(con, findings, request.traces)
+        given = tables.given_logs_by_key(con, findings, request.traces)
         found = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            check_request = tables.drive_request_with_paths(drive, given.get(drive.receipt["log_sha256"]), request.map)
+            check_request = tables.drive_request_with_paths(drive, given.get(drive.key), request.map)
             inputs.add(drive.key, check_request)
             found += _write_findings_of_drive(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
