@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
-_FEW: Final = 0.5
+_LEAST_COMMON_SHARE: Final = 0.5
 """If a smaller share of the drives of the smaller audit is in both, the rates say more about the fleets than the findings."""
 MIN_SHOWN_TESTS: Final = 5
 """The smallest number of shown tests of rates, even if fewer tests report a difference."""
@@ -171,7 +171,7 @@ class AuditDifference:
         """Whether so few drives are in both audits that the findings of other drives are not listed as new or gone: rates are compared."""
         told = self.comparison
         smaller = told.drives_both + min(told.drives_base_only, told.drives_new_only)
-        return 0 < told.drives_both < _FEW * smaller
+        return 0 < told.drives_both < _LEAST_COMMON_SHARE * smaller
 
     def listed_entries(self, standing: str) -> list[FindingEntry]:
         """Return the entries of a standing that are listed: with few common drives, only theirs."""
