@@ -1,4 +1,4 @@
--- One of each event counts. New findings of stable rules by severity; those of drives that the base does not have; those of the base that are gone and not fixed; known ones that are worse; of the fixed ones those that pass now and those that do not apply. Then how many there are of each standing, and whether several profiles found one event.
+-- One of each event counts. New findings of stable rules by severity; those of drives that only one audit has (`alone_`: rows; `added_`: those that gate); those of the base that are gone and not fixed; known ones that are worse; of the fixed ones those that pass now and those that do not apply. Then how many there are of each standing, and whether several profiles found one event.
 WITH new_counted AS ({new_counted}), base_counted AS ({base_counted}), sided AS (
     SELECT *, standing NOT IN ('fixed', 'elsewhere', 'unknown', 'lost') AS is_new, CASE WHEN is_new THEN new_key ELSE base_key END AS key
     FROM difference
@@ -21,6 +21,12 @@ SELECT
     count(DISTINCT event) FILTER (standing IN ('unknown', 'lost', 'elsewhere') AND was_stable AND severity = 'minor') AS gone_minor,
     count(DISTINCT event) FILTER (worse) AS worse,
     count(DISTINCT event) FILTER (standing = 'new' AND why_code = 'drive_not_checked') AS of_new_drives,
+    count(DISTINCT event) FILTER (standing = 'lost' AND why_code = 'drive_not_checked') AS of_base_drives,
+    count(*) FILTER (standing = 'new' AND why_code = 'drive_not_checked') AS alone_new,
+    count(*) FILTER (standing = 'lost' AND why_code = 'drive_not_checked') AS alone_lost,
+    count(DISTINCT event) FILTER (standing = 'new' AND why_code = 'drive_not_checked' AND stable AND severity = 'critical') AS added_critical,
+    count(DISTINCT event) FILTER (standing = 'new' AND why_code = 'drive_not_checked' AND stable AND severity = 'major') AS added_major,
+    count(DISTINCT event) FILTER (standing = 'new' AND why_code = 'drive_not_checked' AND stable AND severity = 'minor') AS added_minor,
     count(DISTINCT event) FILTER (standing = 'fixed' AND there = 'pass') AS passes,
     count(DISTINCT event) FILTER (standing = 'fixed') - count(DISTINCT event) FILTER (standing = 'fixed' AND there = 'pass') AS not_applicable,
     count(DISTINCT event) FILTER (standing = 'new') AS "new",

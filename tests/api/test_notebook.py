@@ -55,8 +55,8 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
-    assert list(PROGRAMS) == ["gap.py", "timeline.py", "plot.py", "room.py", "fastest.py", "way.py"]
-    first, _, plot, room, fastest, way, result, table = run(folder, *PROGRAMS.values(), "r", "r.findings")
+    assert list(PROGRAMS) == ["gap.py", "headway.py", "timeline.py", "plot.py", "room.py", "speeds.py", "way.py"]
+    first, _, _, plot, room, speeds, way, result, table = run(folder, *PROGRAMS.values(), "r", "r.findings")
     assert streams(first).keys() == {"stdout"}, "no progress, no warning"
     assert (folder / "report.html").read_text("utf-8").startswith("<!doctype html>")
     (picture,) = (each["data"]["image/png"] for each in plot if "image/png" in each.get("data", {}))
@@ -65,7 +65,7 @@ def test_the_guides_programs_run_as_a_notebook(folder: Path) -> None:
     assert any("image/png" in each.get("data", {}) for each in room)
     assert any("image/png" in each.get("data", {}) for each in way)
     assert (folder / "way.png").stat().st_size > 5000
-    assert streams(fastest)["stdout"].splitlines()[1] == "{'actor_id': '2', 'mps': 0.0}"
+    assert streams(speeds)["stdout"].splitlines()[1] == "nominal,7.70,3,5.22,5.22"
     (shown,) = result
     assert "FAIL 1 critical" in shown["data"]["text/html"]
     assert "ukhc.r162.safe-distance-ahead [observed]" in shown["data"]["text/html"]

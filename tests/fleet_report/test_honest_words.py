@@ -105,6 +105,40 @@ def test_logs_of_one_content_count_once_everywhere() -> None:
     assert told.content.verdicts == {"pass": 2, "fail": 2, "unknown": 0, "not_applicable": 0, "error": 0}
 
 
+def test_a_drive_that_was_not_judged_is_in_no_denominator() -> None:
+    lost = ego_drive("c", status="not_judged", status_reason="log of c: not mcap", log="log of c", exposure=[])
+    told = Told([ego_drive("a"), ego_drive("b"), lost], [*words("a", "fail"), *words("b")], [touched("a")])
+    assert told.content.headline[1] == "1 critical finding in 1 of 2 judged drives"
+    assert "2 of 3 drives were judged" in told.header
+    (row,) = told.html.xpath("//table[caption[contains(., 'not judged at all')]]/tbody/tr")
+    assert row.xpath("./td")[0].text_content() == "not mcap", "the log stands beside it"
+
+
+def test_a_situation_that_is_not_known_is_not_in_the_table_as_the_page_says() -> None:
+    told = Told([ego_drive("a")], words("a", "fail"), [touched("a")])
+    section = told.html.xpath("//section[@aria-labelledby='coverage']")[0]
+    assert "Not known for any drive, and therefore not in the table: " in section.text_content()
+    assert "weather" not in [each.text_content() for each in section.xpath(".//tbody/tr/th")]
+    told = Told([ego_drive("a", tags={"weather": "wet"}), ego_drive("b")], [*words("a"), *words("b")], [])
+    section = told.html.xpath("//section[@aria-labelledby='coverage']")[0]
+    values = [row.xpath("./td")[0].text_content() for row in section.xpath(".//tbody/tr[th = 'weather']")]
+    assert values == ["wet", "not known"], "known for one drive"
+
+
+def test_the_page_says_why_rates_of_profiles_are_more_than_the_findings() -> None:
+    def told(*profiles: str | None) -> Told:
+        verdicts = [said("a", "fail", rule_id="z-contact", profile=each) for each in profiles]
+        return Told([ego_drive("a")], verdicts, [touched("a", n, profile=each) for n, each in enumerate(profiles)])
+
+    why = "counts in both, and once in the headline"
+    both = told("nominal", "observed")
+    assert both.content.headline[1].startswith("1 ")
+    assert sum(each.findings for each in both.content.rates) == 2
+    assert why in both.html.text_content()
+    assert why in both.markdown
+    assert why not in told(None).html.text_content()
+
+
 def test_a_copy_that_was_judged_by_other_options_hides_nothing() -> None:
     drives = [ego_drive(name, sha256="same") for name in "ab"]
     told = Told(drives, [*words("a"), *words("b", "fail"), *words("b", "unknown")], [touched("b")])

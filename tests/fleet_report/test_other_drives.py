@@ -140,6 +140,49 @@ def test_findings_of_added_drives_are_told_apart() -> None:
     assert difference_text.gating_severity(told, None) == "critical"
 
 
+FEW = ("shared", "lone-1", "lone-2", "lone-3")
+
+
+def test_fleets_with_few_common_drives_are_compared_by_rates() -> None:
+    told = compared(FEW, ("shared", "other-1", "other-2", "other-3"))
+    assert told.headline == (
+        "only 1 drive is in both audits: there 0 new, no earlier finding; 17 findings in 4 drives of the newer audit alone, "
+        "2 findings in 4 drives of the base alone; compare rates"
+    )
+    for markdown in (False, True):
+        text = difference_text.to_text(told, "critical", markdown=markdown)
+        assert "1 drive in both audits, 4 only in the newer audit, 4 only in the base" in text
+        assert "the drive was not checked" not in text
+        assert "Findings in drives that only one audit has are not listed" in text
+        assert (
+            "exit 1: 17 new findings at or above severity critical, 17 of them in drives that the base does not contain; "
+            in text
+        )
+        assert (
+            "rates at or above severity critical are higher than chance explains: overtake per occasion 7.79 times"
+            in text
+        )
+    assert difference_text.exit_code(told, "critical") == ExitCode.FAILED
+    assert len(json.loads(difference_text.to_json(told, "critical"))["entries"]) == 17 + 2
+
+
+def test_new_findings_of_the_few_common_drives_are_still_listed() -> None:
+    with duckdb.connect() as con:
+        fleet(con, "base_", "r1", FEW)
+        names = ("shared", *(f"other-{n}" for n in range(60)))
+        verdicts = [said(name, "fail", rule_id="overtake", ref_id=None) for name in names]
+        findings = [found(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
+        audits.add_rows(con, [ego_drive(name) for name in names], verdicts, findings, RULES)
+        sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
+        told = difference(con, sides[0], sides[1], 50)
+    assert told.headline.startswith(
+        "only 1 drive is in both audits: there 1 new, no earlier finding; 60 findings in 60 drives"
+    )
+    text = difference_text.to_text(told, "critical")
+    assert "New (1, in drives of both audits)\n  critical: shared " in text
+    assert "Rows of findings that differ, by what else differs between the audits:\n  software: 1 new\n" in text
+
+
 @pytest.mark.ci
 def test_a_tag_that_all_drives_of_an_audit_share_is_the_software_of_drives_that_only_it_has() -> None:
     for told in (compared(), compared(base_also=("shared",), new_also=("shared",))):

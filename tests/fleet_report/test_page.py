@@ -61,7 +61,10 @@ def test_the_headline_counts_what_the_tables_have(written: Any, filled: lake.Lak
     n = [found["severity"].count(severity) for severity in ("critical", "major", "minor")]
     assert sum(n) == filled.n_findings
     (head,) = written.xpath("//h1")
-    said = f"{n[0]:,} critical, {n[1]:,} major, {n[2]:,} minor findings in {len(set(found['key'])):,} of 1,200 drives"
+    n_judged = table(filled.folder, "drives")["status"].count("judged")
+    assert n_judged == 1200 - filled.n_not_judged
+    told = f"{n[0]:,} critical, {n[1]:,} major, {n[2]:,} minor findings in {len(set(found['key'])):,}"
+    said = f"{told} of {n_judged:,} judged drives"
     assert head.text_content().strip() == said
     assert f"{filled.n_not_judged} could not be judged" in written.xpath("//header")[0].text_content()
 

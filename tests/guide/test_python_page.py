@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import runpy
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import drivelint
 from drivelint import demo
 from drivelint.guide import FOLDER
 from tests.guide.blocks import blocks
@@ -55,6 +57,24 @@ def test_the_headway_of_each_drive_is_drawn(tmp_path: Path, monkeypatch: pytest.
     assert set(headways["file_name"]) == {file.name for file in Path("demo").glob("*.mcap")}
     assert 2 < headways["observed"].min() < headways["observed"].max() < 10
     assert Path("headway.png").stat().st_size > 5000
+
+
+@pytest.mark.ci
+def test_the_speeds_at_a_finding_are_those_of_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the two differ, and where an object stands."""
+    code = code_of_the_page("speeds.py")
+    assert LOG in code
+    given = code.replace(LOG, '"demo/collision.mcap"').replace('rules="ukhc.r162.*"', "rules=None")
+    found = run(given, tmp_path, monkeypatch)["findings"].to_dicts()
+    trace = drivelint.read_trace("demo/collision.mcap")
+    speeds = {(row["actor_id"], row["t_ns"]): math.hypot(row["vx_mps"], row["vy_mps"]) for row in trace.actor_state}
+    assert len(found) > 5
+    for row in found:
+        for who in ("ego", "object"):
+            assert row[f"{who}_mps"] == pytest.approx(speeds[row[f"{who}_id"], row["t_worst_ns"]]), row
+    objects = [row["object_mps"] for row in found]
+    assert min(objects) == 0
+    assert max(objects) > 5
 
 
 @pytest.mark.ci

@@ -89,23 +89,23 @@ def pack(
 def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) -> None:
     """Write a pack and print a summary of its content; with `on_stderr` on stderr."""
     from drivelint.pack import write_pack
+    from drivelint.pack.audits import packed_findings_text
     from drivelint.pack.contents import findings_with_sql_text
     from drivelint.result.load import load_result
 
     told = run_interruptible(lambda: write_pack(request))
     findings, left = told["findings"], told.get("findings_left_out")
     if left is not None:  # an audit
-        n = sum(1 for finding in findings if finding["sql"])
-        counted = (
-            f"{n} of {plural(len(findings), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
-        )
+        counted = packed_findings_text(request.out, told)
     else:
         counted = findings_with_sql_text(load_result(request.folder).findings.to_pylist(), findings)
     signed = "signed" if request.key else "not signed"
     less = f"; {plural(left, 'less severe finding')} left out (drivelint pack --findings all)" if left else ""
+    copies = told.get("n_copies")
+    once = f"; {plural(copies, 'log')} with the content of another log: counted once" if copies else ""
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
-    said = f"{signed}; {counted}{less}{sheets}"
+    said = f"{signed}; {counted}{less}{once}{sheets}"
     typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=on_stderr)
     for finding in findings:
         if finding["without_sql_because"]:

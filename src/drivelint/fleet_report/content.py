@@ -118,7 +118,10 @@ class FleetContent:
                 f"{self.severities[name]['findings']:,} {name}" for name in SEVERITIES if name in self.severities
             )
             noun = "finding" if self.n_findings == 1 else "findings"
-            return "fail", f"{said} {noun} in {self.n_drives_with_findings:,} of {self.totals['drives']:,} drives"
+            of = (
+                f"{self.totals['judged']:,} judged drives" if self.n_not_judged else f"{self.totals['drives']:,} drives"
+            )
+            return "fail", f"{said} {noun} in {self.n_drives_with_findings:,} of {of}"
         if not self.verdicts["pass"]:
             return "unknown", "Nothing could be decided"
         if self.audit.warning or self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged:

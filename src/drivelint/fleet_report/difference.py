@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import duckdb
@@ -15,6 +15,7 @@ from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE_PREFIX
 from drivelint.fleet_report.rows import counted_finding_of_each_finding_sql, query_rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
+from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES, VERDICTS, rows_and_findings_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
 from drivelint.result.text import number
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
+_LEAST_COMMON_SHARE: Final = 0.5
+"""If a smaller share of the drives of the smaller audit is in both, the rates say more about the fleets than the findings."""
 MIN_SHOWN_TESTS: Final = 5
 """The smallest number of shown tests of rates, even if fewer tests report a difference."""
 _REASON_TEXTS: Final = {
@@ -101,7 +104,8 @@ class AuditDifference:
 
     `counts`: standing -> number of rows. All other numbers count one finding of each event, as the headline of an audit does.
     `event_counts`: standing -> number of findings. `has_profiles`: whether several profiles found one event.
-    `of_new_drives`: new findings in drives that the base does not have. `gating`: severity -> number of new findings of stable rules.
+    `of_lone_drives`: standing -> number of findings in drives that only one audit has; `rows_of_lone_drives`: of rows.
+    `gating`: severity -> number of new findings of stable rules; `gating_added`: those in drives that the base does not have.
     `gone_by_severity`: severity -> number of the base's findings of stable rules that the newer audit did not judge or cannot decide.
     `causes`: what else differs -> standing -> number of findings.
     `base_only`, `new_only`: some of the logs that only one audit has.
@@ -113,9 +117,11 @@ class AuditDifference:
     event_counts: dict[str, int]
     has_profiles: bool
     worse: int
-    of_new_drives: int
+    of_lone_drives: dict[str, int]
+    rows_of_lone_drives: dict[str, int]
     fixed: tuple[int, int]
     gating: dict[str, int]
+    gating_added: dict[str, int]
     gone_by_severity: dict[str, int]
     verdicts: tuple[dict[str, int], dict[str, int]]
     entries: dict[str, list[FindingEntry]]
@@ -135,13 +141,63 @@ class AuditDifference:
         """One sentence with the counts, or that the audits have no drive in common."""
         if self.is_disjoint:
             return f"{NOTHING_IN_COMMON}; compare rates"
-        added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
+        n_added = self.of_lone_drives["new"]
+        if self.has_few_common_drives:
+            told = self.comparison
+            counts = {standing: self.n_listed_findings(standing) for standing in self.event_counts}
+            verb, n_gone = "is" if told.drives_both == 1 else "are", self.of_lone_drives["lost"]
+            return (
+                f"only {plural(told.drives_both, 'drive')} {verb} in both audits: there {counts['new']} new, "
+                f"{counts_sentence(counts, self.worse, self.fixed)}; "
+                f"{plural(n_added, 'finding')} in {plural(told.drives_new_only, 'drive')} of the newer audit alone, "
+                f"{plural(n_gone, 'finding')} in {plural(told.drives_base_only, 'drive')} of the base alone; compare rates"
+            )
+        added = f" ({n_added} in drives that the base does not contain)" if n_added else ""
         return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
+
+    @property
+    def drives_sentence(self) -> str:
+        """How many drives are in both audits, and how many in only one of them."""
+        told = self.comparison
+        only = [
+            f"{n} only in the {which}"
+            for n, which in ((told.drives_new_only, "newer audit"), (told.drives_base_only, "base"))
+            if n
+        ]
+        return ", ".join([f"{plural(told.drives_both, 'drive')} in both audits", *only])
+
+    @property
+    def has_few_common_drives(self) -> bool:
+        """Whether so few drives are in both audits that the findings of other drives are not listed as new or gone: rates are compared."""
+        told = self.comparison
+        smaller = told.drives_both + min(told.drives_base_only, told.drives_new_only)
+        return 0 < told.drives_both < _LEAST_COMMON_SHARE * smaller
+
+    def listed_entries(self, standing: str) -> list[FindingEntry]:
+        """Return the entries of a standing that are listed: with few common drives, only theirs."""
+        entries = self.entries[standing]
+        return [each for each in entries if "drive" not in each.causes] if self.has_few_common_drives else entries
+
+    def n_listed_findings(self, standing: str) -> int:
+        """Return the number of findings of a standing: with few common drives, only of these drives."""
+        return self.event_counts[standing] - self._left_out(self.of_lone_drives, standing)
+
+    def n_listed_rows(self, standing: str) -> int:
+        """Return the number of rows of a standing: with few common drives, only of these drives."""
+        return self.counts[standing] - self._left_out(self.rows_of_lone_drives, standing)
+
+    def _left_out(self, numbers: dict[str, int], standing: str) -> int:
+        return numbers.get(standing, 0) if self.has_few_common_drives else 0
+
+    @property
+    def listed_causes(self) -> dict[tuple[str, ...], Counter[str]]:
+        """`causes`; with few common drives, only of these drives."""
+        return {k: told for k, told in self.causes.items() if not (self.has_few_common_drives and "drive" in k)}
 
     def extra_rows_sentence(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
         return rows_and_findings_sentence(
-            self.counts[standing], self.event_counts[standing], has_profile_repeats=self.has_profiles
+            self.n_listed_rows(standing), self.n_listed_findings(standing), has_profile_repeats=self.has_profiles
         )
 
     @property
@@ -153,6 +209,10 @@ class AuditDifference:
     def n_failing(self, fail_on: str) -> int:
         """Return the number of new findings of stable rules at or above a severity."""
         return _count_at_or_above(self.gating, fail_on)
+
+    def n_failing_in_added_drives(self, fail_on: str) -> int:
+        """Return how many of the findings of `n_failing` are in drives that the base does not have."""
+        return _count_at_or_above(self.gating_added, fail_on)
 
     def n_gone_unfixed(self, fail_on: str) -> int:
         """Return the number of findings of the base audit that are missing in the new audit without being fixed.
@@ -213,19 +273,21 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
             causes.setdefault(each.causes, Counter())[each.standing] += each.n
             not_known.update(dict.fromkeys(each.causes_not_known, each.n))
     standing_counts = comparison.counts_by_standing()
-    return AuditDifference(
+    told = AuditDifference(
         base=base,
         new=new,
         counts={standing: standing_counts[standing] for standing in DIFF_STATUSES},
         event_counts={standing: gating[standing] for standing in DIFF_STATUSES},
         has_profiles=gating["of_profiles"],
         worse=gating["worse"],
-        of_new_drives=gating["of_new_drives"],
+        of_lone_drives={"new": gating["of_new_drives"], "lost": gating["of_base_drives"]},
+        rows_of_lone_drives={"new": gating["alone_new"], "lost": gating["alone_lost"]},
         fixed=(gating["passes"], gating["not_applicable"]),
         gating={severity: gating[severity] for severity in SEVERITIES},
+        gating_added={severity: gating[f"added_{severity}"] for severity in SEVERITIES},
         gone_by_severity={severity: gating[f"gone_{severity}"] for severity in SEVERITIES},
         verdicts=(verdict_counts(con, sides["base"]), verdict_counts(con, sides["new"])),
-        entries={standing: _entries(con, sides, standing, max_entries) for standing in DIFF_STATUS_TITLES},
+        entries={},
         causes=dict(sorted(causes.items(), key=lambda item: (-item[1].total(), item[0]))),
         causes_not_known=not_known,
         comparison=comparison,
@@ -236,6 +298,8 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
         rates=compare_rates(con, base=BASE_PREFIX, new=""),
         gating_rules=dict(con.execute("SELECT rule_id, severity FROM rules WHERE status = 'stable'").fetchall()),
     )
+    few = told.has_few_common_drives
+    return replace(told, entries={each: _entries(con, sides, each, max_entries, few) for each in DIFF_STATUS_TITLES})
 
 
 def verdict_counts(con: duckdb.DuckDBPyConnection, view_prefix: str) -> dict[str, int]:
@@ -255,9 +319,14 @@ def write_finding_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
 
 
 def _entries(
-    con: duckdb.DuckDBPyConnection, prefix_by_side: dict[str, str], standing: str, max_entries: int
+    con: duckdb.DuckDBPyConnection,
+    prefix_by_side: dict[str, str],
+    standing: str,
+    max_entries: int,
+    common_first: bool,
 ) -> list[FindingEntry]:
-    entry_rows = query_rows(con, "entries", {"standing": standing, "most": max_entries}, **prefix_by_side)
+    asked = {"standing": standing, "most": max_entries, "common_first": common_first}
+    entry_rows = query_rows(con, "entries", asked, **prefix_by_side)
     return [
         FindingEntry(
             _compared_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"]

@@ -82,14 +82,17 @@ def _exit_code_and_reason(difference: AuditDifference, fail_on: str | None) -> s
         )
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
-    n = difference.n_gone_unfixed(fail_on)
-    return exit_sentence(
+    n, n_added = difference.n_gone_unfixed(fail_on), difference.n_failing_in_added_drives(fail_on)
+    said = exit_sentence(
         difference.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
     )
+    added = f", {n_added} of them in drives that the base does not contain" if n_added else ""
+    rates = f"; {_rates_sentence(difference)}" if difference.has_few_common_drives else ""
+    return f"{said}{added}{rates}"
 
 
 def _rates_sentence(difference: AuditDifference) -> str:
-    """Return a phrase about the comparison of rates of two audits without a common drive."""
+    """Return a phrase about the comparison of rates of two audits without a common drive, or with few."""
     least = _default_gating_severity(difference)
     if risen := difference.risen_rate_tests(least):
         rates_text = ", ".join(
@@ -99,9 +102,10 @@ def _rates_sentence(difference: AuditDifference) -> str:
         return f"rates at or above severity {least} are higher than chance explains: {rates_text}{more}"
     if warnings := _warnings(difference):
         return f"no rate at or above severity {least} is higher than chance explains so far, but {warnings[0]}"
+    why = NOTHING_IN_COMMON if difference.is_disjoint else "few drives are in both audits"
     if not difference.has_rates:
-        return f"{NOTHING_IN_COMMON}, and no rule has a rate in both"
-    return f"no rate at or above severity {least} is higher than chance explains ({NOTHING_IN_COMMON})"
+        return f"{why}, and no rule has a rate in both"
+    return f"no rate at or above severity {least} is higher than chance explains ({why})"
 
 
 def changes_sentence(difference: AuditDifference) -> str:

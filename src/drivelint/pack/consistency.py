@@ -100,7 +100,7 @@ def _altered_files(folder: Path) -> list[Problem]:
         return []
 
 
-def read_evidence(folder: Path) -> dict[str, Any]:
+def read_evidence(folder: Path, version: int = FORMAT_VERSION) -> dict[str, Any]:
     """Return the content of `evidence.json`. Errors: `ValueError` if a key occurs twice, or for another version of the format."""
 
     def dict_of_distinct_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -112,8 +112,8 @@ def read_evidence(folder: Path) -> dict[str, Any]:
     told: dict[str, Any] = json.loads(
         (folder / EVIDENCE_FILE).read_text("utf-8"), object_pairs_hook=dict_of_distinct_keys
     )
-    if told["evidence"] != FORMAT_VERSION:
-        raise ValueError(f"{EVIDENCE_FILE} is of form {told['evidence']}, this drivelint reads {FORMAT_VERSION}")
+    if told["evidence"] != version:
+        raise ValueError(f"{EVIDENCE_FILE} is of form {told['evidence']}, this drivelint reads {version}")
     return told
 
 

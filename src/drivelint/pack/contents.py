@@ -31,6 +31,8 @@ RESULT_FOLDER: Final = "data/result"
 FINDINGS_FOLDER: Final = "data/findings"
 FORMAT_VERSION: Final = 1
 """Version of the format, the value of `evidence` in `evidence.json`: raised when a key is removed or changes its meaning."""
+AUDIT_FORMAT_VERSION: Final = 2
+"""The same for the pack of an audit. Since version 2, `n_findings` and `findings_left_out` count findings as the audit does."""
 COPIED_RESULT_FILES: Final = frozenset(name for name in RESULT_FILE_GLOBS if not ("*" in name or "/" in name)) - {
     "drivelint.duckdb",
     MANIFEST,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields
 from itertools import pairwise
-from pathlib import Path
+from operator import index
+from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -22,11 +23,19 @@ from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, receipt_fields
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
+from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
+from drivelint.fleet_report.rows import counted_finding_ids_sql, finding_per_event_sql
 from drivelint.formats import expand_traces
 from drivelint.formats.files import identify
 from drivelint.formats.search import why_unreadable
 from drivelint.pack.bag import DATA, Problem, sha256_of
-from drivelint.pack.contents import FINDING_ENTRY_COLUMNS, evidence_values_of_rules, sha256_by_path
+from drivelint.pack.contents import (
+    FINDING_ENTRY_COLUMNS,
+    evidence_values_of_rules,
+    findings_with_sql_text,
+    sha256_by_path,
+)
 from drivelint.pack.inputs import request_with_present_paths
 from drivelint.result.certainty import LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
 from drivelint.result.counts import group_rows
@@ -85,14 +94,13 @@ def evidence_values_of_audit(
     """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
     counted = summary_of_all_drives(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
-    # all rows of the table: also findings of copied logs, and both findings of a contact of two egos
-    ((n_findings,),) = con.execute("SELECT count(*) FROM findings").fetchall()
     not_judged = con.execute(statement("audit/not_judged")).to_arrow_table().to_pylist()
     return {
         "audit": audit.audit_json,
         "n_drives": counted.n_drives,
+        "n_copies": counted.copies + counted.copies_not_judged,
         "n_lossy": counted.lossy,
-        "n_findings": n_findings,
+        "n_findings": sum(counted.findings.values()),
         "not_judged": not_judged,
         "exit": {"code": int(counted.exit_code(fail_on, strict=False)), "fail_on": fail_on},
         **evidence_values_of_rules(folder, rules),
@@ -164,10 +172,38 @@ def _rows_by_drive_key(rows: pa.Table) -> dict[str, pa.Table]:
 
 
 def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
-    """Return the worst findings, each with the key of its drive, in the order of reports. `max_findings`: None: all findings."""
-    sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING))
+    """Return the rows of the worst findings, each with the key of its drive, in the order of reports.
+
+    Findings are counted as in the summary of the audit: a finding that copies of a log share has only the row of the first of them, and an
+    overtake under two profiles is one finding with two rows. `max_findings`: None: all findings.
+    """
+    create_counted_views(con)
+    sql = statement(
+        "audit/worst_findings",
+        event=finding_per_event_sql(COUNTED_PREFIX),
+        counted_id=counted_finding_ids_sql(COUNTED_PREFIX),
+        least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING),
+    )
     found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
     return found
+
+
+def n_packed_findings(evidence: dict[str, Any]) -> int:
+    """Return how many findings have their rows in a pack. Errors: `TypeError` if `evidence.json` has no whole numbers."""
+    return index(evidence["n_findings"]) - index(evidence["findings_left_out"])
+
+
+def n_copies_without_findings(con: duckdb.DuckDBPyConnection, findings: Sequence[Row]) -> int:
+    """Return how many judged drives repeat the log of another one and have none of these findings, which are from `worst_findings`."""
+    sql = "SELECT count(*) FROM counted_key JOIN drives USING (key) WHERE no > 1 AND status = 'judged' AND NOT list_contains($keys, key)"
+    ((n,),) = con.execute(sql, {"keys": sorted({row["key"] for row in findings})}).fetchall()
+    return int(n)
+
+
+def packed_findings_text(pack_folder: Path, evidence: dict[str, Any]) -> str:
+    """Return in words how many of the findings in the pack of an audit have SQL."""
+    with open_audit_in_evidence_pack(pack_folder / AUDIT_FOLDER) as (con, _):
+        return findings_with_sql_text(worst_findings(con, n_packed_findings(evidence)), evidence["findings"])
 
 
 def packed_drives(
@@ -215,22 +251,28 @@ def judge_settings(audit: Audit) -> JudgeSettings:
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
-def given_logs_by_sha256(
+def given_logs_by_key(
     con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]
 ) -> dict[str, Path]:
-    """Return hash -> path of the given logs that belong to a drive with one of these findings. Folders are searched.
+    """Return key of a drive -> path of its given log, for the drives with these findings. Folders are searched.
 
-    Files of other sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
+    If several given logs have the hash of the drive's log, the one with its name is taken: the name is a part of the rows. Files of other
+    sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
     """
     if not log_paths:
         return {}
     keys = sorted({row["key"] for row in findings})
-    sql = "SELECT log_sha256, size FROM receipts WHERE list_contains($keys, key)"
+    sql = "SELECT key, log, log_sha256, size FROM receipts WHERE list_contains($keys, key)"
     receipts = con.execute(sql, {"keys": keys}).fetchall()
-    wanted, sizes = ({row[i] for row in receipts} for i in (0, 1))
+    sizes = {size for _, _, _, size in receipts}
     there = [path for path in expand_traces(list(map(str, log_paths))) if why_unreadable(path) is None]
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
-    found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
+    by_digest = group_rows(likely, lambda path: identify(path).sha256)
+    found = {
+        key: max(by_digest[digest], key=lambda path: path.name == PurePath(log).name)
+        for key, log, digest, _ in receipts
+        if digest in by_digest
+    }
     if not found:
         raise UsageError(f"--trace {log_paths[0]}: no log there belongs to a drive with a finding in the pack")
     return found

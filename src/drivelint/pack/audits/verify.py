@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
@@ -24,7 +25,13 @@ from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.consistency import READ_ERRORS
-from drivelint.pack.contents import EVIDENCE_FILE, FINDINGS_FOLDER, library_versions, path_inside_pack
+from drivelint.pack.contents import (
+    AUDIT_FORMAT_VERSION,
+    EVIDENCE_FILE,
+    FINDINGS_FOLDER,
+    library_versions,
+    path_inside_pack,
+)
 from drivelint.pack.statement import ENVELOPE_FILE, STATEMENT_FILE, statement_problems
 from drivelint.phrases import name_list, plural
 
@@ -52,6 +59,7 @@ class _AuditPack:
     """The opened pack of an audit, with counts of what was verified.
 
     `rules_by_id`: the rules that judged; None: this drivelint has other rules. `packed_by`: version of drivelint that wrote the pack.
+    `n_copies`: number of judged drives without a finding in the pack whose log has the content of another one.
     `n_judged`: number of drives that were judged again. `n_alone`: number of drives without a log, for which only the findings' SQL was
     run. `n_run`: number of their findings.
     """
@@ -64,6 +72,7 @@ class _AuditPack:
     rules_dirs: tuple[Path, ...]
     rules_by_id: dict[str, Rule] | None
     packed_by: str
+    n_copies: int = 0
     n_judged: int = 0
     n_alone: int = 0
     n_run: int = 0
@@ -78,12 +87,13 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
     with ExitStack() as stack:
         try:
             con, audit = stack.enter_context(open_audit_in_evidence_pack(request.folder / tables.AUDIT_FOLDER))
-            evidence = consistency.read_evidence(request.folder)
+            evidence = consistency.read_evidence(request.folder, AUDIT_FORMAT_VERSION)
             rules = pq.read_table(request.folder / tables.AUDIT_FOLDER / RULES_FILE)
             dirs = tuple(path_inside_pack(request.folder, place) for place in evidence["rules_dirs"])
             packed_by = consistency.packing_version(evidence)
             pack = _AuditPack(request.folder, con, audit, evidence, rules, dirs, _rules_by_id(rules, dirs), packed_by)
-            findings = tables.worst_findings(con, len(evidence["findings"]))
+            findings = tables.worst_findings(con, tables.n_packed_findings(evidence))
+            pack.n_copies = tables.n_copies_without_findings(con, findings)
             wrong = [*_problems_of_tables(pack), *_problems_of_evidence(pack, findings)]
             due = in_toto_statement(pack.folder, evidence)
             wrong = _problems_of_statement(pack.folder, due) + wrong
@@ -92,10 +102,10 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
             return [Problem("result not readable", str(error))], "", "", []
         if wrong:
             return wrong, "not judged again", "", []
-        given = tables.given_logs_by_sha256(con, findings, request.traces)
+        given = tables.given_logs_by_key(con, findings, request.traces)
         try:
             for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-                wrong += _problems_of_drive(pack, drive, given.get(drive.receipt["log_sha256"]), request.map)
+                wrong += _problems_of_drive(pack, drive, given.get(drive.key), request.map)
         except msgspec.MsgspecError as error:
             wrong.append(Problem("receipts not readable", str(error)))
         return wrong, _judged_again_phrase(pack), outcome, _notes_on_unexamined(pack)
@@ -122,7 +132,7 @@ def _problems_of_evidence(pack: _AuditPack, findings: Sequence[Row]) -> Iterator
     """Yield the contradictions between `evidence.json` and the tables, and the files that are not named anywhere."""
     folder, evidence = pack.folder, pack.evidence
     due = tables.evidence_values_of_audit(folder, pack.con, pack.audit, pack.rules.to_pylist())
-    due["findings_left_out"] = due["n_findings"] - len(findings)
+    due["findings_left_out"] = max(due["n_findings"] - tables.n_packed_findings(evidence), 0)
     said = [{key: row[key] for key in tables.FINDING_KEYS} for row in findings]
     keys = consistency.differing_evidence_keys(evidence, due, said, pack.rules.to_pylist())
     inputs = evidence["inputs"] or {"traces": {}, "maps": {}}
@@ -185,7 +195,9 @@ def _problems_of_drive(
     wrong = (
         []
         if _has_same_rows_as_audit(pack, drive, fresh)
-        else [Problem("result not reproduced", f"the rows of {_drive_name_and_key(drive)}")]
+        else [
+            Problem("result not reproduced", f"the rows of {_drive_name_and_key(drive)}{_renaming_phrase(drive, log)}")
+        ]
     )
     place = f"{FINDINGS_FOLDER}/{drive.key}"
     files = {
@@ -261,11 +273,17 @@ def _drive_name_and_key(drive: tables.PackedDrive) -> str:
     return f"{drive.receipt['drive_id']} ({drive.key})"
 
 
+def _renaming_phrase(drive: tables.PackedDrive, log: Path | None) -> str:
+    """Return a phrase that says that a given log has another name than when it was judged; '' if it has not."""
+    name = PurePath(drive.receipt["log"]).name
+    return "" if log is None or log.name == name else f": {log} was named {name} when it was judged: give it this name"
+
+
 def _judged_again_phrase(pack: _AuditPack) -> str:
     if not pack.n_judged:
         return "not judged again"
     same = "the same rows, written by another version of a library" if pack.other_bytes else "the same bytes"
-    return f"{pack.n_judged} of {plural(pack.evidence['n_drives'], 'drive')} judged again: {same}"
+    return f"{pack.n_judged} of {plural(pack.evidence['n_drives'] - pack.n_copies, 'drive')} judged again: {same}"
 
 
 def _notes_on_unexamined(pack: _AuditPack) -> list[str]:
@@ -278,18 +296,22 @@ def _notes_on_unexamined(pack: _AuditPack) -> list[str]:
             else "the SQL of their findings was not run: this drivelint has other rules"
         )
         notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")
-    if rest := evidence["n_drives"] - len(evidence["not_judged"]) - pack.n_judged - pack.n_alone:
-        known = (
-            "not judged again; their rows have the hashes in the receipts"
-            if _has_same_pyarrow(pack)
-            else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
-        )
+    known = (
+        "not judged again; their rows have the hashes in the receipts"
+        if _has_same_pyarrow(pack)
+        else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
+    )
+    ((n_refused,),) = pack.con.execute("SELECT count(*) FROM receipts WHERE status <> 'judged'").fetchall()
+    if rest := evidence["n_drives"] - n_refused - pack.n_copies - pack.n_judged - pack.n_alone:
         notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {known}")
+    if pack.n_copies:
+        notes.append(f"{plural(pack.n_copies, 'log')} with the content of another log, counted once: {known}")
     if left := evidence["findings_left_out"]:
         notes.append(f"{plural(left, 'finding')} of less weight: no rows in the pack")
     if evidence["not_judged"]:
-        logs = [row["log"] for row in evidence["not_judged"]]
-        notes.append(f"not judged when it was audited, nor now: {name_list(logs, 3)}")
+        names = name_list([row["log"] for row in evidence["not_judged"]], 3)
+        of = f" ({plural(n_refused, 'drive')})" if n_refused > len(evidence["not_judged"]) else ""
+        notes.append(f"not judged when it was audited, nor now: {names}{of}")
     if changed := sorted(name for name, value in versions().items() if told.get(name) != value):
         notes.append(f"audited by other versions of {', '.join(changed)}")
     if pack.packed_by != __version__:

@@ -53,15 +53,15 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
         loaded_rules = reproduction.rules_of_table(rules, dirs)
         copy_rule_files(loaded_rules, pack_folder)
         inputs = _InputCopier(pack_folder, with_inputs=request.with_inputs)
-        given = tables.given_logs_by_sha256(con, findings, request.traces)
+        given = tables.given_logs_by_key(con, findings, request.traces)
         found = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            check_request = tables.drive_request_with_paths(drive, given.get(drive.receipt["log_sha256"]), request.map)
+            check_request = tables.drive_request_with_paths(drive, given.get(drive.key), request.map)
             inputs.add(drive.key, check_request)
             found += _write_findings_of_drive(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
-            "evidence": contents.FORMAT_VERSION,
+            "evidence": contents.AUDIT_FORMAT_VERSION,
             **tables.evidence_values_of_audit(pack_folder, con, audit, rules.to_pylist()),
             "packed_with": contents.library_versions(),
             "mappings": inputs.mappings,
@@ -69,7 +69,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
             "inputs": {"traces": inputs.traces, "maps": inputs.maps} if request.with_inputs else None,
             "findings": sorted(found, key=lambda row: order[row["key"], row["finding_id"]]),
         }
-    told["findings_left_out"] = told["n_findings"] - len(found)
+    told["findings_left_out"] = 0 if request.findings is None else max(told["n_findings"] - request.findings, 0)
     there = {path.relative_to(request.folder).parts[0] for path in request.folder.rglob("*") if path.is_file()}
     told["left_out"] = sorted(name for name in there - {Path(name).parts[0] for name in names} if name[0] != ".")
     (pack_folder / contents.EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
