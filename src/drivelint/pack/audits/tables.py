@@ -25,7 +25,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
-from drivelint.fleet_report.rows import counted_finding_ids_sql, finding_per_event_sql
+from drivelint.fleet_report.rows import counted_finding_of_each_finding_sql, finding_per_event_sql
 from drivelint.formats import expand_traces
 from drivelint.formats.files import identify
 from drivelint.formats.search import why_unreadable
@@ -181,7 +181,7 @@ def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> 
     sql = statement(
         "audit/worst_findings",
         event=finding_per_event_sql(COUNTED_PREFIX),
-        counted_id=counted_finding_ids_sql(COUNTED_PREFIX),
+        counted_id=counted_finding_of_each_finding_sql(COUNTED_PREFIX),
         least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING),
     )
     found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
