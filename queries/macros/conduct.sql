@@ -186,6 +186,9 @@ CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
 -- Our default: an ego that stays astride of the line behind a vehicle for this long has pulled out to pass it. An ego that only sways over
 -- the line comes back at once.
 CREATE OR REPLACE MACRO stays_out_ns() AS 3_000_000_000;
+-- Our default: an ego that stayed over the line, to look past the vehicle ahead, pulls out if its centre then moves this much further out.
+-- Less than that may also be a correction, unless it is so little (measured_m()) that the ego stayed where it was.
+CREATE OR REPLACE MACRO pulls_out_m() AS 0.3;
 -- Our default: the vehicle behind may have begun to brake for an overtake at most this long before the overtake begins.
 CREATE OR REPLACE MACRO braked_before_ns() AS 2_000_000_000;
 
