@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.scenes import LANE, Actor, Road, derived, drive, judged, moving, road, rows, standing, times
+from tests.scenes import LANE, Actor, Road, derived, drive, judged, moving, road, rows, standing, swing, times
 
 Floats = NDArray[np.float64]
 T = times(40.0)
@@ -49,6 +49,15 @@ def scene(hand: str, *steps: tuple[float, float], tail: float = 0.0, ahead: Any 
     return way, [ego, parked, moving("ov", way, T, 700 - 9 * T, way.other)]
 
 
+def first_over(way: Road, ego: Actor, after_s: float = 0.0) -> int:
+    """Return the first time in ns with a corner more than 0.05 m over the line, on a straight road, by the corners themselves."""
+    assert ego.length
+    assert ego.width
+    ahead, aside = ego.length / 2 * np.sin(ego.yaw) * way.over, ego.width / 2 * np.abs(np.cos(ego.yaw))
+    over = way.over * ego.y + np.abs(ahead) + aside > 0.05
+    return round(float(ego.t_s[np.flatnonzero(over & (ego.t_s >= after_s))[0]]) * 1e9)
+
+
 def overtakes(way: Road, actors: list[Actor]) -> list[dict[str, Any]]:
     return rows(derived(drive(actors, way.environment), tables=["overtake"]), "FROM overtake ORDER BY occurrence")
 
@@ -63,7 +72,7 @@ def test_a_tail_that_swings_out_beside_the_car_passed_does_not_end_the_overtake(
         *("vbp", "completed"), *(True, True, True))  # fmt: skip
     # it begins to move over at 150 m, which it reaches at 12.5 s, and has done so 6 m later
     assert 12.5e9 < found["t0_ns"] < found["t_out_ns"] <= 13.3e9 + 1
-    assert found["t_begun_ns"] == found["t0_ns"]
+    assert found["t_begun_ns"] == found["t0_ns"] == first_over(way, actors[0])
     k = round(found["t0_ns"] / 1e8)
     assert found["vbp_gap_m"] == pytest.approx(PARKED - actors[0].x[k] - 4.8, abs=0.2)
     assert found["da_m"] == pytest.approx(700 - 9 * T[k] - actors[0].x[k] - 4.8, abs=0.2)
@@ -96,6 +105,45 @@ def test_an_ego_that_stays_and_gains_little_may_have_pulled_out_then(
     assert (found["t_begun_ns"] == found["t0_ns"]) == certain
     if not certain:
         assert pulled - 1 < found["t_begun_ns"] < pulled + 8e8
+
+
+@HANDS
+@pytest.mark.parametrize("pace", [6.0, 20.0, 40.0])
+def test_an_ego_that_moves_over_slowly_without_staying_pulls_out_at_the_line(hand: str, pace: float) -> None:
+    way, actors = scene(hand)
+    s = 50 + 8 * T
+    ego = moving("ego", way, T, s, swing(way, s, 130, BACK, change=pace, share=share(1.0)))
+    (found,) = overtakes(way, [ego, *actors[1:]])
+    assert found["t0_ns"] == found["t_begun_ns"] == first_over(way, ego)
+
+
+@HANDS
+def test_an_ego_that_was_wholly_over_the_line_has_pulled_out_already(hand: str) -> None:
+    """It comes back astride the line behind the car, stays so for 4 s, and moves out once more."""
+    way, (ego, parked, ov) = scene(hand, (130, 2.0), (145, 0.4), (190, 1.2))
+    (found,) = overtakes(way, [ego, parked, ov])
+    assert found["t0_ns"] == found["t_begun_ns"] == first_over(way, ego)
+    assert found["t0_ns"] < found["t1_ns"] == found["t_out_ns"]
+
+
+@HANDS
+def test_an_ego_with_its_centre_over_the_line_does_not_only_look(hand: str) -> None:
+    """It stays 1 m over the line, more than half its width, and then moves out by another 0.5 m."""
+    way, (ego, parked, ov) = scene(hand, (150, 1.0), (190, 1.5))
+    (found,) = overtakes(way, [ego, parked, ov])
+    assert found["t0_ns"] == found["t_begun_ns"] == first_over(way, ego)
+
+
+@HANDS
+def test_a_vehicle_that_first_comes_past_on_the_inside_is_overtaken_later(hand: str) -> None:
+    """It is behind the ego as that goes astride, passes in its lane, and slows down 25 m ahead; then the ego moves out further."""
+    way, (ego, _, ov) = scene(hand)
+    s = 50 + 8 * T
+    ego = moving("ego", way, T, s, astride(way, s, (150, 0.4), (225, 0.9), back=300))
+    inside = moving("vbp", way, T, np.where(T < 20, 130 + 14 * (T - 12.5), 235 + 3 * (T - 20)), way.own - 0.6 * way.over)
+    (found,) = overtakes(way, [ego, inside, ov])
+    assert (found["vbp_id"], found["passed"], found["begin_seen"]) == ("vbp", True, True)
+    assert 21.8e9 < found["t0_ns"] == found["t_begun_ns"] < 22.6e9
 
 
 @HANDS
