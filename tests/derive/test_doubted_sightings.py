@@ -27,8 +27,12 @@ def doubted(told: Drive, actor: str, quantity: str, code: str, span: tuple[float
     """Return the drive with a doubt about a quantity of an actor in this span."""
     table = told.trace.tables["doubt"]
     row = {
-        **{"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": quantity, "code": code},
-        **{"t_from_ns": round(span[0] * 1e9), "t_to_ns": round(span[1] * 1e9)},
+        "drive_id": told.trace.drive_id,
+        "actor_id": actor,
+        "quantity": quantity,
+        "code": code,
+        "t_from_ns": round(span[0] * 1e9),
+        "t_to_ns": round(span[1] * 1e9),
     }
     told.trace.tables["doubt"] = pa.concat_tables([table, pa.Table.from_pylist([row], schema=table.schema)])
     return told
@@ -115,7 +119,12 @@ def test_what_is_beside_the_lane_by_a_doubt_may_be_in_it(hand: str, quantity: st
     other = moving("x", way, T, 60 + speed * T, way.own - way.over * aside).lost((T > 2.45) & (T < 3.55))
     told = drive([moving("ego", way, T, np.full(len(T), 100.0), way.own), other], way.environment)
     at = 2.5 if quantity == "size" else 2.9
-    code = {"velocity": "velocity_jolt", "heading": "heading_spin", "size": "size_implausible", "position": "held_track"}
+    code = {
+        "velocity": "velocity_jolt",
+        "heading": "heading_spin",
+        "size": "size_implausible",
+        "position": "held_track",
+    }
     assert hidden(told)[at]["beside_lane"]
     found = hidden(doubted(told, "x", quantity, code[quantity]))
     assert not found[at]["beside_lane"]
@@ -157,7 +166,9 @@ def test_a_rule_does_not_pass_by_a_sighting_in_doubt(hand: str, quantity: str, c
     rule = "ukhc.r126.stopping-gap"
 
     def late(told: Drive) -> set[str]:
-        return {row["verdict"] for row in judged([told], rules=[rule]) if row["t_end_ns"] is None or row["t_end_ns"] > 3e9}
+        return {
+            row["verdict"] for row in judged([told], rules=[rule]) if row["t_end_ns"] is None or row["t_end_ns"] > 3e9
+        }
 
     told = drive([ego, other], way.environment)
     told = doubted(told, "x", quantity, code, (1.95, 2.55))

@@ -140,7 +140,9 @@ def test_a_vehicle_that_first_comes_past_on_the_inside_is_overtaken_later(hand: 
     way, (ego, _, ov) = scene(hand)
     s = 50 + 8 * T
     ego = moving("ego", way, T, s, astride(way, s, (150, 0.4), (225, 0.9), back=300))
-    inside = moving("vbp", way, T, np.where(T < 20, 130 + 14 * (T - 12.5), 235 + 3 * (T - 20)), way.own - 0.6 * way.over)
+    inside = moving(
+        "vbp", way, T, np.where(T < 20, 130 + 14 * (T - 12.5), 235 + 3 * (T - 20)), way.own - 0.6 * way.over
+    )
     (found,) = overtakes(way, [ego, inside, ov])
     assert (found["vbp_id"], found["passed"], found["begin_seen"]) == ("vbp", True, True)
     assert 21.8e9 < found["t0_ns"] == found["t_begun_ns"] < 22.6e9
@@ -219,5 +221,7 @@ def test_both_hands_have_the_same_times() -> None:
         times_of = []
         for hand in ("rht", "lht"):
             found = overtakes(*scene(hand, (150, 0.4), (190, 0.7), tail=tail))
-            times_of.append([(row["t0_ns"], row["t_begun_ns"], row["t_out_ns"], row["t2_ns"], row["t3_ns"]) for row in found])
+            times_of.append(
+                [(row["t0_ns"], row["t_begun_ns"], row["t_out_ns"], row["t2_ns"], row["t3_ns"]) for row in found]
+            )
         assert times_of[0] == times_of[1] != []

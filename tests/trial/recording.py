@@ -154,9 +154,7 @@ def _track(actor_class: str, length: float | None, width: float | None, *columns
     drawn_length, drawn_width = NO_SIZE.get(actor_class, (4.5, 1.8))
     sized = length is not None and width is not None
     doubted = np.array(columns[-1], dtype=np.bool_)
-    return Track(
-        actor_class, length or drawn_length, width or drawn_width, sized, t, x, y, yaw, speed, travel, doubted
-    )
+    return Track(actor_class, length or drawn_length, width or drawn_width, sized, t, x, y, yaw, speed, travel, doubted)
 
 
 def apart(one: Track, other: Track) -> tuple[Floats, Floats, Floats, Floats]:

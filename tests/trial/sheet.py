@@ -1,7 +1,7 @@
 """Draws the sheet of a finding: the scene from above at its begin, worst moment and end, its course over time, and what it claims.
 
-Boxes stand as drivelint has them, with their noses where it has them travel. Where that contradicts the motion of the track, or is in doubt,
-both are marked, in the scene and in the caption: an examiner must not judge by a wrong heading.
+Boxes stand as drivelint has them, with their noses where it has them travel. Where that contradicts the motion of the track, or is in
+doubt, both are marked, in the scene and in the caption: an examiner must not judge by a wrong heading.
 """
 
 from __future__ import annotations
@@ -53,7 +53,9 @@ def _caption(row: dict[str, Any], number: int, ego: Track, other: Track | None) 
 
     def about(track: Track) -> str:
         size = f"{track.length:.1f} x {track.width:.1f} m" if track.sized else "no size"
-        return f"{track.actor_class} {size}, seen {track.t[0]:.1f} to {track.t[-1]:.1f} s{heading_warning(track, moments)}"
+        return (
+            f"{track.actor_class} {size}, seen {track.t[0]:.1f} to {track.t[-1]:.1f} s{heading_warning(track, moments)}"
+        )
 
     who = f"EGO (blue) {about(ego)}" + (f";  OBJECT (red) {about(other)}" if other else ";  no object")
     required = "" if row["required"] is None else f"  required {row['required']:.2f} {row['unit'] or ''}"
@@ -135,7 +137,9 @@ def _box(axis: Any, track: Track, k: int, seen: Any, colour: str) -> None:
     if np.isfinite(track.yaw[k]):
         corners = np.asarray(track.boxes([k])[0].exterior.coords).T
         edge = WARNING if track.doubted[k] else colour
-        axis.fill(*seen(*corners), fc=colour if known else "none", ec=edge, alpha=0.75 if known else 1, lw=1.2, zorder=6)
+        axis.fill(
+            *seen(*corners), fc=colour if known else "none", ec=edge, alpha=0.75 if known else 1, lw=1.2, zorder=6
+        )
         # a box that travels backwards has its nose at its rear
         nose = seen(x + np.cos(track.travel[k]) * reach, y + np.sin(track.travel[k]) * reach)
         axis.plot(*nose, color="k" if known else colour, lw=1.5, zorder=7)
@@ -144,7 +148,9 @@ def _box(axis: Any, track: Track, k: int, seen: Any, colour: str) -> None:
         circle = seen(x + radius * np.cos(around), y + radius * np.sin(around))
         axis.plot(*circle, color=colour if known else WARNING, lw=1.2, ls="--", zorder=6)
     if np.isfinite(motion) and (track.is_off_motion()[k] or track.doubted[k] or not np.isfinite(track.yaw[k])):
-        tip = seen(x + np.array([0, 1]) * np.cos(motion) * track.length, y + np.array([0, 1]) * np.sin(motion) * track.length)
+        tip = seen(
+            x + np.array([0, 1]) * np.cos(motion) * track.length, y + np.array([0, 1]) * np.sin(motion) * track.length
+        )
         axis.annotate("", tip[:, 1], tip[:, 0], arrowprops={"arrowstyle": "->", "color": WARNING, "lw": 1.5}, zorder=9)
 
 

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 T = np.arange(0.0, 5.05, 0.1)
 
 
-def track(speed: float = 8.0, turned: float = 0.0, *, travel: float = 0.0, doubted: bool = False, north: bool = False) -> Track:
+def track(
+    speed: float = 8.0, turned: float = 0.0, *, travel: float = 0.0, doubted: bool = False, north: bool = False
+) -> Track:
     """Return a car that drives straight on, its box `turned` against the motion, its travel against the box by so much (radians)."""
     way = np.pi / 2 if north else 0.0
     x, y = 10 + speed * T * np.cos(way), 20 + speed * T * np.sin(way)
@@ -68,7 +70,7 @@ class _Axis:
         self.lines: list[tuple[NDArray[np.float64], str]] = []
         self.arrows: list[tuple[NDArray[np.float64], str]] = []
 
-    def fill(self, x: Any, y: Any, **how: Any) -> None:
+    def fill(self, x: Any, y: Any, **_: Any) -> None:
         self.filled.append(np.array([x, y]))
 
     def plot(self, x: Any, y: Any, **how: Any) -> None:
