@@ -75,6 +75,22 @@ def test_a_sighting_whose_position_is_in_doubt_is_none(hand: str, quantity: str,
 
 @HANDS
 @PLACES
+def test_the_doubt_about_one_is_none_about_another(hand: str, quantity: str, code: str) -> None:
+    """Both are not seen from 2.5 to 5.5 s; all sightings of the other are in doubt."""
+    way = road(((2000.0, 0.0),), hand)
+    gone = (T > 2.45) & (T < 5.55)
+    actors = [
+        moving("ego", way, T, np.full(len(T), 100.0), way.own),
+        moving("x", way, T, 120 + 20 * T, way.own).lost(gone),
+        moving("y", way, T, 150 + 20 * T, way.own).lost(gone),
+    ]
+    whole = hidden(drive(actors, way.environment))
+    assert whole
+    assert hidden(doubted(drive(actors, way.environment), "y", quantity, code)) == whole
+
+
+@HANDS
+@PLACES
 def test_no_line_leads_through_a_sighting_in_doubt(hand: str, quantity: str, code: str) -> None:
     """It stands 30 m ahead; its last three samples, and only they, have it drive off."""
     way = road(hand=hand)
