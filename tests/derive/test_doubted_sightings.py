@@ -147,6 +147,19 @@ def test_what_is_beside_the_lane_by_a_doubt_may_be_in_it(hand: str, quantity: st
 
 
 @HANDS
+def test_no_other_velocity_stands_for_one_in_doubt(hand: str) -> None:
+    """Only the velocities of the last sighting and the next are in doubt: what it did in between is not known from those before and after."""
+    way = road(hand=hand)
+    other = moving("x", way, T, 60 + 30 * T, way.own - way.over * 12).lost((T > 2.45) & (T < 3.55))
+    told = drive([moving("ego", way, T, np.full(len(T), 100.0), way.own), other], way.environment)
+    assert hidden(told)[2.9]["beside_lane"]
+    told = doubted(told, "x", "velocity", "velocity_jolt", (2.35, 2.45))
+    assert hidden(told)[2.9]["beside_lane"]  # by the next sighting
+    told = doubted(told, "x", "velocity", "velocity_jolt", (3.55, 3.65))
+    assert not hidden(told)[2.9]["beside_lane"]
+
+
+@HANDS
 def test_a_box_whose_size_is_in_doubt_is_as_large_as_any(hand: str) -> None:
     way = road(hand=hand)
     other = standing("x", way, T, 130, way.own).keep(T < 2.55)
