@@ -37,8 +37,17 @@ step_over_line AS MATERIALIZED (
         WINDOW w AS (PARTITION BY x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns ORDER BY c.t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW)
     )
 ),
--- The first step at which the ego is level with the rear of an object that was ahead; later than the excursion if it never is. Objects
--- that are not in the log at all belong to it, too.
+-- Steps at which the ego is level with the rear of an object, or further; also with one that has no position but must be behind.
+level_or_past AS (
+    SELECT drive_id, ego_id, chain_id, t_excursion_ns, object_id, t_ns FROM pair_in_excursion WHERE ego_front_m >= coalesce(rear_s_m, s_m)
+    UNION ALL
+    SELECT x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns, h.object_id, h.t_ns
+    FROM overtaking_excursion x
+    JOIN hidden h ON h.drive_id = x.drive_id AND h.ego_id = x.ego_id AND h.t_ns >= x.t_excursion_ns AND h.t_ns <= x.t_last_ns
+    WHERE NOT h.ahead
+),
+-- The first of these steps after the object was ahead; later than the excursion if there is none. Objects that the log does not have during
+-- the excursion belong to it, too.
 level_step AS (
     SELECT o.drive_id, o.ego_id, o.chain_id, o.t_excursion_ns, o.object_id, coalesce(min(p.t_ns), 9_223_372_036_854_775_807) AS t_level_ns
     FROM (
@@ -52,8 +61,8 @@ level_step AS (
         ANTI JOIN pair_in_excursion p ON p.drive_id = x.drive_id AND p.ego_id = x.ego_id AND p.chain_id = x.chain_id
             AND p.t_excursion_ns = x.t_excursion_ns AND p.object_id = u.object_id
     ) o
-    LEFT JOIN pair_in_excursion p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id
-        AND p.t_excursion_ns = o.t_excursion_ns AND p.object_id = o.object_id AND p.t_ns > o.t_ahead_ns AND p.ego_front_m >= coalesce(p.rear_s_m, p.s_m)
+    LEFT JOIN level_or_past p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id
+        AND p.t_excursion_ns = o.t_excursion_ns AND p.object_id = o.object_id AND p.t_ns > o.t_ahead_ns
     GROUP BY ALL
 ),
 -- What the ego's centre gains after a step at which it stays, until it is level with an object.
@@ -80,8 +89,9 @@ pull_out AS (
         SELECT l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, g.t_ns, g.gain_m
         FROM level_step l
         JOIN gain_after_stay g USING (drive_id, ego_id, chain_id, t_excursion_ns, t_level_ns)
-        -- The ego does not pull out for an object that is behind it, seen or not.
-        ANTI JOIN (FROM hidden WHERE NOT ahead) h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.object_id = l.object_id AND h.t_ns = g.t_ns
+        -- The ego does not pull out for an object that is behind it.
+        ANTI JOIN level_or_past h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id
+            AND h.t_excursion_ns = l.t_excursion_ns AND h.object_id = l.object_id AND h.t_ns = g.t_ns
     ) g USING (drive_id, ego_id, chain_id, t_excursion_ns, object_id)
     GROUP BY l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, l.t_level_ns
 ),
@@ -172,7 +182,7 @@ furthest_step AS (
         SELECT c.*, s.t_ns, s.lateral_m, max(s.lateral_m) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id) AS furthest_m
         FROM overtaken_candidate c
         JOIN step_over_line s USING (drive_id, ego_id, chain_id, t_excursion_ns)
-        WHERE s.t_ns >= c.t0_ns AND (s.t_ns <= c.t_level_ns OR c.t_level_ns <= c.t0_ns)
+        WHERE s.t_ns >= c.t0_ns AND s.t_ns <= c.t_level_ns
     )
     WHERE lateral_m >= furthest_m - measured_m()
     GROUP BY ALL
