@@ -73,7 +73,7 @@ credible_pair AS (
         CASE WHEN d.heading IS NOT true AND d.size IS NOT true THEN p.lat_half_m END AS lat_half_m,
         CASE WHEN d.size IS NOT true THEN p.length_m END AS length_m,
         CASE WHEN d.size IS NOT true THEN p.width_m END AS width_m,
-        d.velocity IS true OR d.heading IS true OR d.size IS true AS is_course_doubted
+        d.velocity IS true OR d.size IS true AS is_course_doubted
     FROM object_without_position u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
     LEFT JOIN doubted_step d ON d.drive_id = p.drive_id AND d.ego_id = p.ego_id AND d.actor_id = p.object_id AND d.t_ns = p.t_ns

@@ -148,7 +148,7 @@ def test_what_is_beside_the_lane_by_a_doubt_may_be_in_it(hand: str, quantity: st
 
 @HANDS
 def test_no_other_velocity_stands_for_one_in_doubt(hand: str) -> None:
-    """Only the velocities of the last sighting and the next are in doubt: what it did in between is not known from those before and after."""
+    """Only the velocities of the last sighting and the next are in doubt: those before and after do not say what it did in between."""
     way = road(hand=hand)
     other = moving("x", way, T, 60 + 30 * T, way.own - way.over * 12).lost((T > 2.45) & (T < 3.55))
     told = drive([moving("ego", way, T, np.full(len(T), 100.0), way.own), other], way.environment)
@@ -180,6 +180,29 @@ def test_a_track_that_ends_or_begins_in_doubt_may_be_near(hand: str, quantity: s
     told = doubted(told, "x", quantity, code, (4.95, 5.45) if appears else (2.55, 3.05))
     found = rows(derived(told, tables=["unseen", "hidden"]), "FROM unseen WHERE object_id = 'x'")
     assert found
+    assert all(row["near"] for row in found)
+
+
+@HANDS
+@PLACES
+@pytest.mark.parametrize("whose", ["x", "ego"])
+def test_a_track_that_ends_in_doubt_at_an_end_of_the_map_may_have_stayed_on_it(
+    hand: str, quantity: str, code: str, whose: str
+) -> None:
+    """It drives off the map ahead: in its last half second it, or the ego, is in doubt."""
+    way = road(((500.0, 0.0),), hand)
+    t = times(35.0)
+    other = moving("x", way, t, 120 + 14 * t, way.own).keep(t < 26.95)
+    told = drive([moving("ego", way, t, 50 + 12 * t, way.own), other], way.environment)
+    ends = ("ahead_m", "behind_m", "off_ahead_m", "off_behind_m")
+    whole = rows(derived(told, tables=["unseen"]), "FROM unseen WHERE object_id = 'x'")
+    assert any(row[name] is not None for row in whole for name in ends)
+    found = rows(
+        derived(doubted(told, whose, quantity, code, (26.45, 27.0)), tables=["unseen"]),
+        "FROM unseen WHERE object_id = 'x'",
+    )
+    assert len(found) >= len(whole) > 0
+    assert {row[name] for row in found for name in ends} == {None}
     assert all(row["near"] for row in found)
 
 

@@ -192,6 +192,20 @@ def test_a_vehicle_that_must_be_behind_is_not_what_the_ego_pulls_out_for(hand: s
 
 
 @HANDS
+@pytest.mark.parametrize("at", [228, 238])
+def test_a_vehicle_that_is_lost_while_the_ego_is_over_the_line_and_then_is_behind_may_be_the_one(
+    hand: str, at: float
+) -> None:
+    """It is lost before the ego goes over the line, and seen again far behind: where it must be behind, no look ends."""
+    way, (ego, parked, ov) = scene(hand)
+    s = 50 + 8 * T
+    ego = moving("ego", way, T, s, astride(way, s, (150, 0.6), (at, 1.2), back=265))
+    (found,) = overtakes(way, [ego, parked.lost((s > 140) & (s < 250)), ov])
+    assert (found["vbp_id"], found["vbp_placed"]) == ("vbp", False)
+    assert found["t0_ns"] < 20.7e9
+
+
+@HANDS
 def test_a_vehicle_that_is_lost_before_the_ego_is_level_may_be_passed_later(hand: str) -> None:
     """Nothing says that the ego has passed it when its tail swings out; it may be the one overtaken, from the begin on."""
     way, (ego, parked, ov) = scene(hand, tail=0.3)
