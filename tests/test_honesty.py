@@ -327,7 +327,7 @@ def test_no_pass_of_what_the_ego_did_unseen(judged: Judged, what: str, span: str
         if span in {"0.3", "0.5", "2"}:
             assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
             assert {row["reason"] for row in judged.of(case, SAFE_DISTANCE)} == {
-                "the log does not clearly show the beginning of the overtake: record the ego from before it"
+                "the log does not show the beginning of the overtake: record the ego from before it"
             }
 
 

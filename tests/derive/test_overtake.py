@@ -158,7 +158,7 @@ def test_a_hole_before_t0_hides_where_it_began() -> None:
     assert found["begin_seen"] is False
     assert found["t0_ns"] > whole["t0_ns"]
     reasons = {sentence(row["reason"]) for row in one(holed, way, "overtake_sda")}
-    assert reasons == {"the log does not clearly show the beginning of the overtake: record the ego from before it"}
+    assert reasons == {"the log does not show the beginning of the overtake: record the ego from before it"}
 
 
 def test_two_vehicles_passed_in_one_go_are_two_occurrences() -> None:
