@@ -74,9 +74,9 @@ CREATE TABLE hidden (
     object_id VARCHAR NOT NULL,       -- an actor that is or may be present without a position on the corridor: it has no position or box, is lost, is beyond the map's end, or is straight ahead of a missing link or in a hole between two lanes
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     vehicle BOOLEAN NOT NULL,         -- the actor may be a vehicle {class}
-    least_m DOUBLE NOT NULL,          -- lower bound of the distance from box to box, from the time and place of the last and next sighting; if late, also from the part that is in plain view {position, heading, size}
+    least_m DOUBLE NOT NULL,          -- lower bound of the distance from box to box, from the time and place of the last and next sighting that are not in doubt; if late, also from the part that is in plain view {position, heading, size}
     ahead BOOLEAN,                    -- the actor is ahead of the ego; NULL: it may be ahead or not {position}
-    along BOOLEAN NOT NULL,           -- the actor moves in the ego's direction: by its last or next sighting on the corridor {position}
+    along BOOLEAN NOT NULL,           -- the actor moves in the ego's direction: by its last or next sighting on the corridor, not in doubt {position}
     late BOOLEAN NOT NULL,            -- the actor is not in plain view, where it would have been recorded: see track_end {position}
     lane_m DOUBLE NOT NULL,           -- lower bound of the distance ahead, if the actor is in the ego's lane: least_m; if late, the part of the lane in plain view; if it is not on the map, the corridor's length {position}
     beside_lane BOOLEAN NOT NULL      -- the actor is not in the ego's lane: it is seen too far beside the lane, too short a time before or after, to be in it {position, heading, velocity}

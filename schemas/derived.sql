@@ -631,7 +631,6 @@ CREATE TABLE excursion (
     side INTEGER NOT NULL,            -- 1: over the left boundary, -1: over the right one {position}
     overtaking BOOLEAN,               -- this is the overtaking side; NULL: handedness unknown {position}
     t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary {position}
-    t_pull_ns BIGINT NOT NULL,        -- t0_ns; if the ego first stayed over the boundary with its centre in the lane: the last step at which it gained less than 0.1 m in a second {position}
     begin_seen BOOLEAN NOT NULL,      -- the step before t0_ns exists, and the ego is inside the lane there {position}
     t_end_ns BIGINT NOT NULL,         -- last step over the boundary {position}
     t_back_ns BIGINT,                 -- the step after t_end_ns, wholly inside again; NULL: the log, a hole or the corridor ends first {position}
@@ -657,10 +656,11 @@ CREATE TABLE overtake (
     vbp_id VARCHAR NOT NULL,          -- VBP: the vehicle being passed, or one that may be it {position}
     vbp_placed BOOLEAN NOT NULL,      -- the VBP's position was known at t0; false: only its presence is known {position}
     sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s; and the ego does not turn in at a junction. False: it may be one {position}
-    begin_seen BOOLEAN NOT NULL,      -- t0 lies in the log: the step before t0 exists, and the ego is inside the lane there; false if t0 may lie in a turn at a junction {position}
-    t0_ns BIGINT NOT NULL,            -- t_pull_ns of the excursion: first step with a corner more than 0.05 m over the boundary or, after a look past the vehicle ahead, the step at which the ego pulls out {position}
+    begin_seen BOOLEAN NOT NULL,      -- t0 is certain: the step before t0 exists, and the ego is inside the lane there; false if t0 may lie in a turn at a junction, or if the ego may have begun later (t_begun_ns) {position}
+    t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary or, if the ego stayed over it before it was level with the VBP: the last step at which it gained less than 0.1 m in a second and after which its centre gained 0.3 m {position}
+    t_begun_ns BIGINT NOT NULL,       -- step at which the overtake certainly has begun: t0_ns or, if the centre then stayed and gained 0.1 to 0.3 m, the last step of this stay {position}
     t1_ns BIGINT,                     -- first step wholly in the overtaking lane {position}
-    t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1; in an overtake astride the line, the first step within 0.1 m of the greatest excursion {position}
+    t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1; in an overtake astride the line, the first step within 0.1 m of the furthest place of the centre before the ego is level with the VBP {position}
     t2_ns BIGINT,                     -- step at which the lateral speed changes its sign, see t_turn_ns of excursion {position}
     t3_ns BIGINT,                     -- first step wholly back in the running lane {position}
     t_end_ns BIGINT NOT NULL,         -- t3_ns, or the last step of the excursion {position}

@@ -56,20 +56,6 @@ furthest_step AS (
     WHERE s.out_m >= w.max_out_m - 0.1
     GROUP BY ALL
 ),
--- The end of a look past the vehicle ahead: the ego stays at the line with its centre in the lane, and pulls out later.
-peek_end AS (
-    SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.stretch_no, max(s.t_ns) AS t_pull_ns
-    FROM whole_stretch w
-    JOIN furthest_step e USING (drive_id, ego_id, chain_id, side, stretch_no)
-    JOIN (
-        SELECT *, first_value({'t_ns': t_ns, 'out_m': out_m}) OVER (
-            PARTITION BY drive_id, ego_id, chain_id, side, stretch_no ORDER BY t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW
-        ) AS earlier
-        FROM stretch_sample
-    ) s USING (drive_id, ego_id, chain_id, side, stretch_no)
-    WHERE s.t_ns < coalesce(w.t_over_ns, e.t_furthest_ns) AND s.lateral_m <= s.half_width_m AND s.t_ns - s.earlier.t_ns >= 900_000_000 AND s.out_m - s.earlier.out_m < 0.1
-    GROUP BY ALL
-),
 -- The turn back: the last step over the line at which the lateral speed was not yet towards the running lane.
 turn_back AS (
     SELECT w.drive_id, w.ego_id, w.chain_id, w.side, w.stretch_no, max(s.t_ns) AS t_turn_ns
@@ -80,7 +66,7 @@ turn_back AS (
     GROUP BY ALL
 )
 SELECT
-    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, coalesce(p.t_pull_ns, w.t0_ns) AS t_pull_ns, w.first.has_step_before AS begin_seen, w.t_end_ns,
+    w.drive_id, w.ego_id, w.chain_id, w.side, w.first.overtaking AS overtaking, w.t0_ns, w.first.has_step_before AS begin_seen, w.t_end_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN w.last.after.t_ns END AS t_back_ns,
     w.t_over_ns, coalesce(w.t_over_ns, e.t_furthest_ns) AS t_out_ns,
     CASE WHEN w.last.after.k = w.last.k + 1 AND w.last.after.seg = w.last.seg THEN t.t_turn_ns END AS t_turn_ns,
@@ -89,5 +75,4 @@ SELECT
     CASE WHEN w.first.overtaking THEN w.first.over_against END AS over_against
 FROM whole_stretch w
 JOIN furthest_step e USING (drive_id, ego_id, chain_id, side, stretch_no)
-LEFT JOIN peek_end p USING (drive_id, ego_id, chain_id, side, stretch_no)
 LEFT JOIN turn_back t USING (drive_id, ego_id, chain_id, side, stretch_no)

@@ -3,7 +3,8 @@
 -- near the straight line from one to the other, and beyond both near that through two sightings, whatever its velocities. An actor that drives along the road, in the ego's
 -- direction or against it, neither turns round nor reverses. If the log is assumed to record every actor in plain view (data_log.in_sight),
 -- an actor that is not recorded for a while is not in plain view. An actor off all lanes is not listed if the corridor extends further than
--- the actor's distance, ahead and behind, without a hole: the actor is then certainly off the road.
+-- the actor's distance, ahead and behind, without a hole: the actor is then certainly off the road. What is in doubt of a sighting bounds
+-- nothing: a sighting whose position is in doubt counts as none, and one whose velocity, heading or size is in doubt lacks it.
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
 ),
@@ -51,6 +52,34 @@ lane_hole AS (
     JOIN lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
     WHERE hole_length_m > f.slack0_m
 ),
+object_without_position AS (SELECT DISTINCT drive_id, ego_id, object_id FROM missing_step),
+-- What is in doubt of the objects, and of the ego, from which their distances are measured.
+doubted_step AS (
+    SELECT
+        st.drive_id, st.ego_id, d.actor_id, st.t_ns, bool_or(doubts_place(d.quantity)) AS place, bool_or(d.quantity = 'velocity') AS velocity, bool_or(d.quantity = 'heading') AS heading, bool_or(d.quantity = 'size') AS size
+    FROM doubt d
+    JOIN step st ON st.drive_id = d.drive_id AND st.t_ns BETWEEN d.t_from_ns AND d.t_to_ns
+    LEFT JOIN object_without_position o ON o.drive_id = st.drive_id AND o.ego_id = st.ego_id AND o.object_id = d.actor_id
+    WHERE d.quantity <> 'class' AND (o.object_id IS NOT NULL OR d.actor_id = st.ego_id)
+    GROUP BY ALL
+),
+credible_pair AS (
+    SELECT
+        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.actor_class, p.distance_m, p.x_m, p.y_m, p.d_m, p.half_width_m, p.off_level, p.front_s_m, p.rear_s_m,
+        coalesce(d.velocity, false) AS is_velocity_doubted,
+        CASE WHEN d.velocity IS NOT true THEN p.speed_mps END AS speed_mps,
+        CASE WHEN d.heading IS NOT true THEN p.yaw_rad END AS yaw_rad,
+        CASE WHEN d.heading IS NOT true THEN p.heading_diff_rad END AS heading_diff_rad,
+        CASE WHEN d.heading IS NOT true AND d.size IS NOT true THEN p.lat_half_m END AS lat_half_m,
+        CASE WHEN d.size IS NOT true THEN p.length_m END AS length_m,
+        CASE WHEN d.size IS NOT true THEN p.width_m END AS width_m,
+        d.velocity IS true OR d.size IS true AS is_course_doubted
+    FROM object_without_position u
+    JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
+    LEFT JOIN doubted_step d ON d.drive_id = p.drive_id AND d.ego_id = p.ego_id AND d.actor_id = p.object_id AND d.t_ns = p.t_ns
+    ANTI JOIN (FROM doubted_step WHERE place AND actor_id = ego_id) e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    WHERE p.distance_m IS NOT NULL AND d.place IS NOT true
+),
 sighting AS (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m,
@@ -59,7 +88,7 @@ sighting AS (
         -- How far beside the ego's lane the object is, and how fast it may come nearer to that lane. The first velocity of a track may be
         -- missing: the velocity of the next sample replaces it. An object without a position beside a corridor without holes is outside the
         -- corridor's strip.
-        coalesce(p.speed_mps, lead(p.speed_mps) OVER w, lag(p.speed_mps) OVER w) AS v_mps,
+        CASE WHEN NOT p.is_velocity_doubted THEN coalesce(p.speed_mps, lead(p.speed_mps) OVER w, lag(p.speed_mps) OVER w) END AS v_mps,
         {
             'chain_id': e.chain_id, 'across_mps': v_mps * coalesce(abs(sin(p.heading_diff_rad)), 1.0), 'v_mps': v_mps,
             'm': CASE
@@ -72,19 +101,17 @@ sighting AS (
         first_value({'t_ns': p.t_ns, 'x_m': p.x_m, 'y_m': p.y_m}) OVER (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns RANGE BETWEEN 490_000_000 FOLLOWING AND 1_000_000_000 FOLLOWING) AS later,
         -- Position along the road of an object that moves in the ego's direction (1) or against it (-1).
         CASE
-            WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' THEN NULL
+            WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' OR p.is_course_doubted THEN NULL
             WHEN abs(p.heading_diff_rad) < pi() / 4
                 THEN {'road': r.road, 'chain_id': r.chain_id, 'direction': 1, 'front_m': p.front_s_m + r.offset_m, 'rear_m': p.rear_s_m + r.offset_m, 'v_mps': p.speed_mps}
             WHEN abs(p.heading_diff_rad) > 3 * pi() / 4 AND p.speed_mps > moves_mps() AND is_vehicle(p.actor_class)
                 THEN {'road': r.road, 'chain_id': r.chain_id, 'direction': -1, 'front_m': p.front_s_m + r.offset_m, 'rear_m': p.rear_s_m + r.offset_m, 'v_mps': p.speed_mps}
         END AS along
-    FROM (SELECT DISTINCT drive_id, ego_id, object_id FROM missing_step) u
-    JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
+    FROM credible_pair p
     JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
     LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     LEFT JOIN corridor_range z ON z.drive_id = e.drive_id AND z.ego_id = e.ego_id AND z.chain_id = e.chain_id
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id, chain_id FROM lane_hole WHERE NOT is_last) h ON h.drive_id = e.drive_id AND h.ego_id = e.ego_id AND h.chain_id = e.chain_id
-    WHERE p.distance_m IS NOT NULL
     WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
 ),
 -- The least distance of the object after its last and before its next sighting. It moves straight on, or brakes or turns as hard as tyres

@@ -4,7 +4,7 @@ WITH manoeuvre_excursion AS (
     SELECT x.*
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t0_ns AND e.chain_id = x.chain_id
-    WHERE x.centre_over OR EXISTS (FROM overtake o WHERE o.drive_id = x.drive_id AND o.ego_id = x.ego_id AND o.t0_ns = x.t_pull_ns AND o.passed)
+    WHERE x.centre_over OR EXISTS (FROM overtake o WHERE o.drive_id = x.drive_id AND o.ego_id = x.ego_id AND o.chain_id = x.chain_id AND o.side = x.side AND o.t0_ns >= x.t0_ns AND o.t0_ns <= x.t_end_ns AND o.passed)
 ),
 boundary_crossing AS (
     SELECT drive_id, ego_id, t0_ns AS t_ns, begin_seen, side, false AS back FROM manoeuvre_excursion

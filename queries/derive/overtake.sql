@@ -1,32 +1,116 @@
 -- Overtakes (Harper et al. 2021, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest
 -- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre crossed the line. A smaller excursion that was
 -- completely seen is only a wobble. Every further vehicle that the ego passes in the same excursion counts, too.
+--
+-- An ego that first stays over the line, to look past the vehicle ahead, overtakes when it pulls out from there. It pulls out for a
+-- vehicle before it is level with that vehicle: what it does beside or beyond a vehicle, such as swinging its tail out, does not change
+-- when it began to overtake that vehicle.
 WITH overtaking_excursion AS (
-    SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps,
-        e.in_junction, e.yaw_rad - e.heading_diff_rad AS lane_rad
+    SELECT x.* EXCLUDE (t0_ns, t_out_ns), x.t0_ns AS t_excursion_ns, coalesce(x.t_back_ns, x.t_end_ns) AS t_last_ns
     FROM excursion x
-    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
-    JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
-    LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = coalesce(x.t_back_ns, x.t_end_ns)
-    -- Only excursions from the running chain at t0. The ego is outside a chain all the time before it enters it, which is no excursion.
-    WHERE x.overtaking AND e.chain_id = x.chain_id
+    WHERE x.overtaking AND EXISTS (
+        FROM ego_state e WHERE e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns >= x.t0_ns AND e.t_ns <= x.t_end_ns AND e.chain_id = x.chain_id
+    )
 ),
 -- The positions of the ego and all objects during an excursion, read once from the large table pair. Later queries read these rows by key.
 pair_in_excursion AS MATERIALIZED (
-    SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, e.yaw_rad - e.heading_diff_rad AS lane_rad, p.*
-    FROM overtaking_excursion g
-    JOIN ego_state e ON e.drive_id = g.drive_id AND e.ego_id = g.ego_id AND e.t_ns >= g.t0_ns AND e.t_ns <= coalesce(g.t_back_ns, g.t_end_ns)
+    SELECT x.chain_id, x.t_excursion_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, e.yaw_rad - e.heading_diff_rad AS lane_rad, p.*
+    FROM overtaking_excursion x
+    JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns >= x.t_excursion_ns AND e.t_ns <= x.t_last_ns
     JOIN (
         SELECT drive_id, ego_id, t_ns, object_id, actor_class, x_m, y_m, s_m, d_m, front_s_m, rear_s_m, lat_half_m, half_width_m,
             heading_diff_rad, speed_mps, length_m
         FROM pair
     ) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
 ),
+-- The steps over the line. At a step with `stays`, the ego's centre is in the lane, and the ego gained less than 0.1 m in the last second.
+step_over_line AS MATERIALIZED (
+    SELECT
+        *, t_ns < coalesce(t_over_ns, t_end_ns) AND lateral_m <= half_width_m AND t_ns - earlier.t_ns >= 900_000_000 AND out_m - earlier.out_m < 0.1 AS stays
+    FROM (
+        SELECT
+            x.drive_id, x.ego_id, x.chain_id, x.side, x.t_excursion_ns, x.t_over_ns, x.t_end_ns, c.t_ns, x.side * c.d_m AS lateral_m, c.half_width_m,
+            CASE x.side WHEN 1 THEN c.left_out_m ELSE c.right_out_m END AS out_m, first_value({'t_ns': c.t_ns, 'out_m': out_m}) OVER w AS earlier
+        FROM overtaking_excursion x
+        JOIN ego_corridor c ON c.drive_id = x.drive_id AND c.ego_id = x.ego_id AND c.chain_id = x.chain_id AND c.t_ns >= x.t_excursion_ns AND c.t_ns <= x.t_end_ns
+        WHERE c.left_out_m IS NOT NULL
+        WINDOW w AS (PARTITION BY x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns ORDER BY c.t_ns RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW)
+    )
+),
+-- Steps at which the ego is level with the rear of an object, or further; also with one that has no position but must be behind.
+level_or_past AS (
+    SELECT drive_id, ego_id, chain_id, t_excursion_ns, object_id, t_ns FROM pair_in_excursion WHERE ego_front_m >= coalesce(rear_s_m, s_m)
+    UNION ALL
+    SELECT x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns, h.object_id, h.t_ns
+    FROM overtaking_excursion x
+    JOIN hidden h ON h.drive_id = x.drive_id AND h.ego_id = x.ego_id AND h.t_ns >= x.t_excursion_ns AND h.t_ns <= x.t_last_ns
+    WHERE NOT h.ahead
+),
+-- The first of these steps after the object was ahead; later than the excursion if there is none. Objects that the log does not have during
+-- the excursion belong to it, too.
+level_step AS (
+    SELECT o.drive_id, o.ego_id, o.chain_id, o.t_excursion_ns, o.object_id, coalesce(min(p.t_ns), 9_223_372_036_854_775_807) AS t_level_ns
+    FROM (
+        SELECT drive_id, ego_id, chain_id, t_excursion_ns, object_id, min(t_ns) FILTER (ego_front_m < coalesce(rear_s_m, s_m)) AS t_ahead_ns
+        FROM pair_in_excursion
+        GROUP BY ALL
+        UNION ALL
+        SELECT DISTINCT x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns, u.object_id, NULL::BIGINT
+        FROM overtaking_excursion x
+        JOIN unplaced u ON u.drive_id = x.drive_id AND u.ego_id = x.ego_id AND u.t_ns >= x.t_excursion_ns AND u.t_ns <= x.t_end_ns
+        ANTI JOIN pair_in_excursion p ON p.drive_id = x.drive_id AND p.ego_id = x.ego_id AND p.chain_id = x.chain_id
+            AND p.t_excursion_ns = x.t_excursion_ns AND p.object_id = u.object_id
+    ) o
+    LEFT JOIN level_or_past p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id
+        AND p.t_excursion_ns = o.t_excursion_ns AND p.object_id = o.object_id AND p.t_ns > o.t_ahead_ns
+    GROUP BY ALL
+),
+-- What the ego's centre gains after a step at which it stays, until it is level with an object.
+gain_after_stay AS (
+    SELECT *
+    FROM (
+        SELECT
+            s.drive_id, s.ego_id, s.chain_id, s.t_excursion_ns, l.t_level_ns, s.t_ns, s.stays,
+            max(s.lateral_m) OVER (PARTITION BY s.drive_id, s.ego_id, s.chain_id, s.t_excursion_ns, l.t_level_ns ORDER BY s.t_ns ROWS BETWEEN 1 FOLLOWING AND UNBOUNDED FOLLOWING) - s.lateral_m AS gain_m
+        FROM step_over_line s
+        JOIN (SELECT DISTINCT drive_id, ego_id, chain_id, t_excursion_ns, t_level_ns FROM level_step) l USING (drive_id, ego_id, chain_id, t_excursion_ns)
+        WHERE s.t_ns <= l.t_level_ns
+    )
+    WHERE stays AND gain_m >= measured_m()
+),
+-- The step at which the ego pulls out for an object: the last at which it stays and then gains enough, or the first over the line. If it
+-- then stays and gains less, it is not known whether it pulled out then: it may have begun as late as t_begun_ns.
+pull_out AS (
+    SELECT
+        l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, l.t_level_ns,
+        coalesce(max(g.t_ns) FILTER (g.gain_m >= pulls_out_m()), l.t_excursion_ns) AS t0_ns, coalesce(max(g.t_ns), l.t_excursion_ns) AS t_begun_ns
+    FROM level_step l
+    LEFT JOIN (
+        SELECT l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, g.t_ns, g.gain_m
+        FROM level_step l
+        JOIN gain_after_stay g USING (drive_id, ego_id, chain_id, t_excursion_ns, t_level_ns)
+        -- The ego does not pull out for an object that is behind it.
+        ANTI JOIN level_or_past h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id
+            AND h.t_excursion_ns = l.t_excursion_ns AND h.object_id = l.object_id AND h.t_ns = g.t_ns
+    ) g USING (drive_id, ego_id, chain_id, t_excursion_ns, object_id)
+    GROUP BY l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, l.t_level_ns
+),
+begin AS (
+    SELECT x.*, o.t0_ns, b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps,
+        e.in_junction, e.yaw_rad - e.heading_diff_rad AS lane_rad
+    FROM (SELECT DISTINCT drive_id, ego_id, chain_id, t_excursion_ns, t0_ns FROM pull_out) o
+    JOIN overtaking_excursion x USING (drive_id, ego_id, chain_id, t_excursion_ns)
+    JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = o.t0_ns
+    JOIN step st ON st.drive_id = o.drive_id AND st.ego_id = o.ego_id AND st.t_ns = o.t0_ns
+    LEFT JOIN step b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = x.t_last_ns
+    -- Only excursions from the running chain at t0. The ego is outside a chain all the time before it enters it, which is no excursion.
+    WHERE e.chain_id = x.chain_id
+),
 ahead AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, p.object_id, CASE WHEN is_vehicle(p.actor_class) THEN p.rear_s_m - g.front_s_m END AS gap_m, p.speed_mps,
         p.length_m, is_vehicle(p.actor_class) IS NOT DISTINCT FROM true AS is_placed, p.rear_s_m - g.front_s_m AS near_m
-    FROM overtaking_excursion g
-    JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns AND p.t_ns = g.t0_ns
+    FROM begin g
+    JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t_excursion_ns = g.t_excursion_ns AND p.t_ns = g.t0_ns
     WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
         AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
@@ -41,7 +125,7 @@ oncoming_object AS (
         SELECT u.*, p.t_ns, coalesce(abs(p.heading_diff_rad) >= 2 * pi() / 3 AND p.speed_mps > standing_mps(), false) AS towards
         FROM (
             SELECT DISTINCT g.drive_id, g.ego_id, g.t0_ns, u.object_id
-            FROM overtaking_excursion g
+            FROM begin g
             JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
         ) u
         JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
@@ -55,11 +139,11 @@ oncoming_object AS (
 candidate_without_place AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS is_placed,
         p.s_m - g.front_s_m AS near_m
-    FROM overtaking_excursion g
+    FROM begin g
     JOIN unplaced u ON u.drive_id = g.drive_id AND u.ego_id = g.ego_id AND u.t_ns = g.t0_ns
     JOIN actor a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
     ANTI JOIN oncoming_object m ON m.drive_id = u.drive_id AND m.ego_id = u.ego_id AND m.t0_ns = u.t_ns AND m.object_id = u.object_id
-    LEFT JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t0_ns = g.t0_ns
+    LEFT JOIN pair_in_excursion p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.chain_id = g.chain_id AND p.t_excursion_ns = g.t_excursion_ns
         AND p.t_ns = g.t0_ns AND p.object_id = u.object_id
     WHERE p.front_s_m IS NULL AND p.s_m > g.s_m AND abs(p.d_m) < 2 * p.half_width_m
         OR (p.x_m IS NULL OR p.y_m IS NULL)
@@ -70,22 +154,38 @@ candidate_without_place AS (
 -- An object that gets a position on the corridor only after t0, ahead in the lane, and that the ego passes, is an overtaken vehicle, too.
 late_candidate AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
-    FROM pair_in_excursion
-    WHERE may_be_vehicle(actor_class) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m() AND abs(heading_diff_rad) < 2 * pi() / 3
+    FROM pull_out
+    JOIN pair_in_excursion USING (drive_id, ego_id, chain_id, t_excursion_ns, object_id)
+    WHERE t_ns >= t0_ns AND may_be_vehicle(actor_class) AND abs(d_m) - lat_half_m < half_width_m - over_boundary_m() AND abs(heading_diff_rad) < 2 * pi() / 3
     GROUP BY drive_id, ego_id, chain_id, t0_ns, object_id
     HAVING min(t_ns) > t0_ns AND min(ego_front_m - front_s_m) < 0 AND max(ego_front_m - front_s_m) > 0
 ),
+-- Each object at the step at which the ego pulls out for it.
 overtaken_candidate AS (
-    SELECT *
+    SELECT c.*, o.t_excursion_ns, o.t_level_ns, o.t_begun_ns
     FROM (
         SELECT * FROM ahead
         UNION ALL
         SELECT * FROM candidate_without_place
         UNION ALL
         SELECT l.* FROM late_candidate l
-        ANTI JOIN pair_in_excursion p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t0_ns = l.t0_ns AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
+        ANTI JOIN pair_in_excursion p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL
         ANTI JOIN candidate_without_place h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.chain_id = l.chain_id AND h.t0_ns = l.t0_ns AND h.object_id = l.object_id
+    ) c
+    JOIN pull_out o USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+),
+-- The end of pulling out astride the line: the first step within 0.1 m of the furthest place of the centre until the ego is level with the
+-- object.
+furthest_step AS (
+    SELECT drive_id, ego_id, chain_id, t0_ns, object_id, min(t_ns) AS t_furthest_ns
+    FROM (
+        SELECT c.*, s.t_ns, s.lateral_m, max(s.lateral_m) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id) AS furthest_m
+        FROM overtaken_candidate c
+        JOIN step_over_line s USING (drive_id, ego_id, chain_id, t_excursion_ns)
+        WHERE s.t_ns >= c.t0_ns AND s.t_ns <= c.t_level_ns
     )
+    WHERE lateral_m >= furthest_m - measured_m()
+    GROUP BY ALL
 ),
 passing AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.t0_ns, c.object_id, bool_or(p.ego_front_m > coalesce(p.front_s_m, p.s_m)) AS passed,
@@ -93,16 +193,18 @@ passing AS (
         -- The direction of the ego's lane where the ego comes level with the vehicle's rear, or at the end of the excursion.
         coalesce(min({'t_ns': p.t_ns, 'rad': p.lane_rad}) FILTER (p.ego_front_m >= p.rear_s_m), max({'t_ns': p.t_ns, 'rad': p.lane_rad})).rad AS level_lane_rad
     FROM overtaken_candidate c
-    JOIN pair_in_excursion p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+    JOIN pair_in_excursion p USING (drive_id, ego_id, chain_id, t_excursion_ns, object_id)
+    WHERE p.t_ns >= c.t0_ns
     GROUP BY ALL
 ),
 overtaken_vehicle AS (
     SELECT
-        g.* EXCLUDE (overtaking), c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed,
+        g.* EXCLUDE (overtaking), coalesce(g.t_over_ns, f.t_furthest_ns) AS t_out_ns, c.t_begun_ns, c.object_id, c.gap_m, c.speed_mps AS v_vbp_mps, c.length_m AS l_vbp_m, c.is_placed, coalesce(a.passed, false) AS passed,
         -- An ego that turns at a junction cuts the corner or swings wide there. It did not leave its lane for a vehicle beyond the turn.
         coalesce(g.in_junction AND (NOT g.begin_seen OR abs(wrap_rad(a.level_lane_rad - g.lane_rad)) > along_lane_rad()), false) AS turns_in
     FROM overtaken_candidate c
-    JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
+    JOIN begin g USING (drive_id, ego_id, chain_id, t0_ns)
+    JOIN furthest_step f USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     CROSS JOIN LATERAL (SELECT coalesce(a.n_seen, 0) >= g.n_steps AS is_seen) n
     -- A vehicle beside the ego from t0 on that the ego never passes: the ego is only over the line beside it, as in a queue. An ego that
@@ -119,7 +221,7 @@ later_gap AS (
     SELECT k.drive_id, k.ego_id, k.chain_id, k.t0_ns, k.object_id, w.moment, p.ego_rear_m - p.front_s_m AS gap_m, p.speed_mps
     FROM overtaken_vehicle k
     CROSS JOIN (VALUES ('t2'), ('t3')) AS w(moment)
-    JOIN pair_in_excursion p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.chain_id = k.chain_id AND p.t0_ns = k.t0_ns AND p.object_id = k.object_id
+    JOIN pair_in_excursion p ON p.drive_id = k.drive_id AND p.ego_id = k.ego_id AND p.chain_id = k.chain_id AND p.t_excursion_ns = k.t_excursion_ns AND p.object_id = k.object_id
         AND p.t_ns = CASE w.moment WHEN 't2' THEN k.t_turn_ns ELSE k.t_back_ns END
 ),
 path_angle AS (
@@ -141,8 +243,8 @@ SELECT
     -- vehicle. An ego that turns in may not have pulled out at all.
     NOT k.turns_in AND CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
         ELSE k.is_placed AND coalesce(k.over_against, false) AND (k.begin_seen AND k.centre_over OR w.stays_out)
-    END AS sure, k.begin_seen AND NOT k.turns_in AS begin_seen,
-    k.t0_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
+    END AS sure, k.begin_seen AND NOT k.turns_in AND k.t_begun_ns = k.t0_ns AS begin_seen,
+    k.t0_ns, k.t_begun_ns, k.t_over_ns AS t1_ns, k.t_out_ns, k.t_turn_ns AS t2_ns, k.t_back_ns AS t3_ns, coalesce(k.t_back_ns, k.t_end_ns) AS t_end_ns, k.passed,
     CASE
         WHEN k.t_back_ns IS NOT NULL AND k.passed THEN 'completed'
         WHEN k.t_back_ns IS NOT NULL THEN 'aborted'

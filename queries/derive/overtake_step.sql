@@ -3,7 +3,7 @@
 -- coordinates: a turned vehicle counts with its real outline, not with its bounding box.
 WITH stage AS (
     SELECT
-        o.drive_id, o.ego_id, o.occurrence, o.vbp_id, o.sure, e.t_ns,
+        o.drive_id, o.ego_id, o.occurrence, o.vbp_id, o.sure AND e.t_ns >= o.t_begun_ns AS sure, e.t_ns,
         CASE
             WHEN e.t_ns < o.t_out_ns THEN 'pulling_out'
             WHEN o.t2_ns IS NULL OR e.t_ns < o.t2_ns THEN 'passing'

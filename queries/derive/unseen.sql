@@ -1,6 +1,6 @@
 -- Actors whose track ends or begins while the log continues, near enough to matter, and the steps at which they may still be on the road.
 -- `near`: when seen, the actor was close, within the sensor's range, or coming towards the ego. While it is not seen, it may be anywhere on
--- the road.
+-- the road. If its position is in doubt when it is last or first seen, it may have been near.
 WITH track AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
 ),
@@ -18,6 +18,13 @@ map_end AS (
     JOIN data_log g USING (drive_id)
     JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last_lanelet.id
     JOIN lane_next f ON f.environment_id = g.environment_id AND f.lanelet_id = r.first_lanelet.id
+),
+-- Samples whose position is in doubt, and steps of egos for which this is so.
+doubted_place AS (
+    SELECT DISTINCT st.drive_id, st.ego_id, d.actor_id, st.t_ns
+    FROM doubt d
+    JOIN step st ON st.drive_id = d.drive_id AND st.t_ns BETWEEN d.t_from_ns AND d.t_to_ns
+    WHERE doubts_place(d.quantity)
 ),
 -- Tracks that end or begin at an end of the map: along the actor's own lane, the next sample (or the one before) lies beyond the map, and
 -- no adjacent lane continues.
@@ -40,10 +47,10 @@ track_at_map_end AS (
 ),
 sighting AS (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, p.distance_m, p.speed_mps, s.speed_mps AS ego_speed_mps, g.sensor_range_m,
-        p.front_s_m, p.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS is_ahead, abs(p.heading_diff_rad) > pi() / 2 AS is_towards,
+        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, credible.distance_m, p.speed_mps, s.speed_mps AS ego_speed_mps, g.sensor_range_m,
+        credible.front_s_m, credible.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS is_ahead, abs(p.heading_diff_rad) > pi() / 2 AS is_towards,
         abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * c.max_gap_ns / 1e9 AS sample_way_m, m.end_m, m.begin_m,
-        r.road, r.offset_m, d.object_id IS NOT NULL AS is_off_map
+        r.road, r.offset_m, d.object_id IS NOT NULL AND credible.is_placed AS is_off_map
     FROM track e
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)
@@ -53,6 +60,12 @@ sighting AS (
     LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
     LEFT JOIN ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
     LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
+    LEFT JOIN doubted_place a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.actor_id = e.object_id AND a.t_ns = v.t_ns
+    LEFT JOIN doubted_place b ON b.drive_id = e.drive_id AND b.ego_id = e.ego_id AND b.actor_id = e.ego_id AND b.t_ns = v.t_ns
+    CROSS JOIN LATERAL (SELECT a.t_ns IS NULL AND b.t_ns IS NULL AS is_placed) q
+    CROSS JOIN LATERAL (
+        SELECT q.is_placed, CASE WHEN q.is_placed THEN p.distance_m END AS distance_m, CASE WHEN q.is_placed THEN p.front_s_m END AS front_s_m, CASE WHEN q.is_placed THEN p.rear_s_m END AS rear_s_m
+    ) credible
     ANTI JOIN track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = v.lost
     WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
 ),

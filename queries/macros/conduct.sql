@@ -71,6 +71,9 @@ CREATE OR REPLACE MACRO strays_m(actor_class, t_s) AS
 -- other_s from the other. It changes its velocity by at most 10 m/s2.
 CREATE OR REPLACE MACRO line_error_m(t_s, other_s) AS 5.0 * t_s * other_s;
 
+-- Whether a doubt about a quantity of an actor is one about its position: at that time it may be elsewhere, or another one is there.
+CREATE OR REPLACE MACRO doubts_place(quantity) AS quantity IN ('position', 'existence', 'identity');
+
 -- How much nearer to a lane an actor can come within t seconds after (or before) it is seen beside the lane: by its lateral speed, by
 -- steering or braking, and by a bend of the lane (50 m of radius).
 CREATE OR REPLACE MACRO comes_beside_m(actor_class, across_mps, v_mps, t_s) AS across_mps * t_s + strays_m(actor_class, t_s) + 0.01 * (v_mps * t_s) ** 2;
@@ -186,6 +189,9 @@ CREATE OR REPLACE MACRO longest_change_ns() AS 10_000_000_000;
 -- Our default: an ego that stays astride of the line behind a vehicle for this long has pulled out to pass it. An ego that only sways over
 -- the line comes back at once.
 CREATE OR REPLACE MACRO stays_out_ns() AS 3_000_000_000;
+-- Our default: an ego that stayed over the line, to look past the vehicle ahead, pulls out if its centre then moves this much further out.
+-- Less than that may also be a correction, unless it is so little (measured_m()) that the ego stayed where it was.
+CREATE OR REPLACE MACRO pulls_out_m() AS 0.3;
 -- Our default: the vehicle behind may have begun to brake for an overtake at most this long before the overtake begins.
 CREATE OR REPLACE MACRO braked_before_ns() AS 2_000_000_000;
 

@@ -258,7 +258,7 @@ def test_an_ego_that_stays_at_the_line_overtakes_when_it_pulls_out(hand: str, re
     share = (LANE / 2 - 0.9 + reach) / LANE
     far, near = swing(way, s, 300, 400), swing(way, s, 60, 400, share=share)
     ego = moving("ego", way, t, s, way.own + (near - way.own) + (far - way.own) * (1 - share))
-    vbp = moving("vbp", way, t, np.where(t < 24, 66 + 10 * t, 306 + 2 * (t - 24)), way.own)
+    vbp = moving("vbp", way, t, np.where(t < 24, 100 + 10 * t, 340 + 2 * (t - 24)), way.own)
     ov = moving("ov", way, t, 850 - 8 * t, way.other)
     (found,) = one([ego, vbp, ov], way, "overtake")
     # at 25 s it begins to move over; a tenth of a metre in a second is soon reached

@@ -15,10 +15,18 @@ from drivelint.sql import store
 Floats = NDArray[np.float64]
 NO_SIZE = {"pedestrian": (0.6, 0.6), "bicycle": (1.8, 0.6), "cyclist": (1.8, 0.6), "motorcycle": (2.2, 0.8)}
 """Length and width in metres with which somebody without a size is drawn; others as a car of 4.5 x 1.8."""
+MOTION_HALF_S = 0.5
+MOTION_LEAST_M = 1.0
+"""A track has a direction of motion where it leads this far within half a second before and after; less may be noise."""
+OFF_MOTION_RAD = np.deg2rad(20.0)
+"""A box of which the heading and the motion differ by more than this, forwards or backwards, is marked: one of the two is wrong."""
 
 
 class Track(NamedTuple):
-    """The states of one actor; `sized`: whether its box is recorded."""
+    """The states of one actor; `sized`: whether its box is recorded.
+
+    `yaw`: the heading of the box. `travel`: the direction in which drivelint has the actor travel. `doubted`: it doubts the heading.
+    """
 
     actor_class: str
     length: float
@@ -29,6 +37,8 @@ class Track(NamedTuple):
     y: Floats
     yaw: Floats
     speed: Floats
+    travel: Floats
+    doubted: NDArray[np.bool_]
 
     def at(self, t: float, tolerance: float = 0.26) -> int | None:
         """Return the index of the state nearest to a time, None: there is none."""
@@ -44,6 +54,23 @@ class Track(NamedTuple):
         corners = np.stack([self.x[i, None] + c * ahead - s * left, self.y[i, None] + s * ahead + c * left], axis=-1)
         polygons: NDArray[np.object_] = shapely.polygons(corners)
         return polygons
+
+    def motion(self) -> Floats:
+        """Return the direction in which the positions lead at each state, NaN where they lead nowhere."""
+        if len(self.t) < 2:
+            return np.full(len(self.t), np.nan)
+        last = len(self.t) - 1
+        i = np.clip(np.searchsorted(self.t, self.t - MOTION_HALF_S - 1e-6), 0, last)
+        j = np.clip(np.searchsorted(self.t, self.t + MOTION_HALF_S + 1e-6, side="right") - 1, 0, last)
+        dx, dy = self.x[j] - self.x[i], self.y[j] - self.y[i]
+        return np.where(np.hypot(dx, dy) >= MOTION_LEAST_M, np.arctan2(dy, dx), np.nan)
+
+    def is_off_motion(self) -> NDArray[np.bool_]:
+        """Return at each state whether the box stands across its motion, or faces away from where it is taken to travel."""
+        motion = self.motion()
+        across = np.abs(np.sin(motion - self.yaw)) > np.sin(OFF_MOTION_RAD)
+        off: NDArray[np.bool_] = across | (np.cos(motion - self.travel) < 0)
+        return off
 
     def moved(self) -> float:
         """Return how far from one place the track leads, in metres."""
@@ -82,12 +109,21 @@ def recording(folder: Path) -> Recording:
     with store.open_without_creating_tables(folder / "drivelint.duckdb", read_only=True) as con:
         states = con.execute(
             """
-            SELECT actor_id, any_value(actor_class), any_value(length_m), any_value(width_m),
-                list((t_ns - start_ns) / 1e9 ORDER BY t_ns), list(x_m ORDER BY t_ns), list(y_m ORDER BY t_ns),
-                list(yaw_rad ORDER BY t_ns), list(sqrt(vx_mps ** 2 + vy_mps ** 2) ORDER BY t_ns)
-            FROM actor_state JOIN actor USING (drive_id, actor_id)
+            SELECT actor_id, any_value(actor.actor_class), any_value(actor.length_m), any_value(actor.width_m),
+                list((t_ns - start_ns) / 1e9 ORDER BY t_ns), list(s.x_m ORDER BY t_ns), list(s.y_m ORDER BY t_ns),
+                list(s.yaw_rad ORDER BY t_ns), list(sqrt(s.vx_mps ** 2 + s.vy_mps ** 2) ORDER BY t_ns),
+                list(coalesce(d.travel_rad, s.yaw_rad) ORDER BY t_ns), list(h.t_ns IS NOT NULL ORDER BY t_ns)
+            FROM actor_state s
+            JOIN actor USING (drive_id, actor_id)
+            LEFT JOIN state_dynamics d USING (drive_id, actor_id, t_ns)
+            LEFT JOIN (
+                SELECT DISTINCT drive_id, actor_id, a.t_ns
+                FROM actor_state a
+                JOIN doubt b USING (drive_id, actor_id)
+                WHERE b.quantity = 'heading' AND a.t_ns BETWEEN b.t_from_ns AND b.t_to_ns
+            ) h USING (drive_id, actor_id, t_ns)
             CROSS JOIN (SELECT min(t_ns) AS start_ns FROM actor_state)
-            WHERE x_m IS NOT NULL GROUP BY actor_id ORDER BY actor_id
+            WHERE s.x_m IS NOT NULL GROUP BY actor_id ORDER BY actor_id
             """
         ).fetchall()
         stops = con.execute("SELECT ST_AsWKB(geom) FROM stop_line").fetchall()
@@ -114,10 +150,11 @@ def _shape(lane: dict[str, Any]) -> LaneShape:
 
 
 def _track(actor_class: str, length: float | None, width: float | None, *columns: list[float | None]) -> Track:
-    t, x, y, yaw, speed = (np.array(column, dtype=np.float64) for column in columns)
+    t, x, y, yaw, speed, travel = (np.array(column, dtype=np.float64) for column in columns[:-1])
     drawn_length, drawn_width = NO_SIZE.get(actor_class, (4.5, 1.8))
     sized = length is not None and width is not None
-    return Track(actor_class, length or drawn_length, width or drawn_width, sized, t, x, y, yaw, speed)
+    doubted = np.array(columns[-1], dtype=np.bool_)
+    return Track(actor_class, length or drawn_length, width or drawn_width, sized, t, x, y, yaw, speed, travel, doubted)
 
 
 def apart(one: Track, other: Track) -> tuple[Floats, Floats, Floats, Floats]:

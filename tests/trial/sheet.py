@@ -1,4 +1,8 @@
-"""Draws the sheet of a finding: the scene from above at its begin, worst moment and end, its course over time, and what it claims."""
+"""Draws the sheet of a finding: the scene from above at its begin, worst moment and end, its course over time, and what it claims.
+
+Boxes stand as drivelint has them, with their noses where it has them travel. Where that contradicts the motion of the track, or is in
+doubt, both are marked, in the scene and in the caption: an examiner must not judge by a wrong heading.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,8 @@ if TYPE_CHECKING:
     from .lots import Result
 
 EGO, OBJECT, MOVING, PARKED = "tab:blue", "tab:red", "0.25", "0.6"
+WARNING = "magenta"
+"""The motion of an actor whose box does not stand along it, and boxes without a heading or with one in doubt."""
 FILLS = {"crosswalk": "#fff2b0", "bicycle": "#d7efd7", "walkway": "#eee0ee", "shoulder": "#e8e0d8"}
 BEFORE_S = AFTER_S = 5.0
 
@@ -43,9 +49,13 @@ def drawn(result: Result, row: dict[str, Any], number: int, path: Path) -> None:
 
 
 def _caption(row: dict[str, Any], number: int, ego: Track, other: Track | None) -> str:
+    moments = [row[f"t_{name}_s"] for name in ("start", "worst", "end")]
+
     def about(track: Track) -> str:
         size = f"{track.length:.1f} x {track.width:.1f} m" if track.sized else "no size"
-        return f"{track.actor_class} {size}, seen {track.t[0]:.1f} to {track.t[-1]:.1f} s"
+        return (
+            f"{track.actor_class} {size}, seen {track.t[0]:.1f} to {track.t[-1]:.1f} s{heading_warning(track, moments)}"
+        )
 
     who = f"EGO (blue) {about(ego)}" + (f";  OBJECT (red) {about(other)}" if other else ";  no object")
     required = "" if row["required"] is None else f"  required {row['required']:.2f} {row['unit'] or ''}"
@@ -60,13 +70,30 @@ def _caption(row: dict[str, Any], number: int, ego: Track, other: Track | None) 
     return "\n".join(piece for line in lines for piece in textwrap.wrap(line, 165, subsequent_indent="     "))
 
 
+def heading_warning(track: Track, moments: list[float]) -> str:
+    """Return what an examiner must know of the headings at these times; '' where the boxes stand along the motion."""
+    off, said = track.is_off_motion(), []
+    for t in dict.fromkeys(moments):
+        i = track.at(t)
+        if i is None:
+            continue
+        if not np.isfinite(track.yaw[i]):
+            said.append(f"no heading at {t:.1f} s")
+        elif off[i] or track.doubted[i]:
+            turned = abs(np.degrees(np.angle(np.exp(1j * (track.motion()[i] - track.yaw[i])))))
+            apart_from = "" if np.isnan(turned) else f" {turned:.0f} deg off its motion"
+            said.append(f"heading{apart_from}{' (in doubt)' if track.doubted[i] else ''} at {t:.1f} s")
+    return f" ({WARNING.upper()}: {', '.join(said)})" if said else ""
+
+
 def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> None:
     ego, other = log.tracks[row["ego_id"]], log.tracks.get(row["object_id"] or "")
     i = ego.at(t)
     if i is None:
         return
     j = None if other is None else other.at(t)
-    x0, y0, turn = ego.x[i], ego.y[i], np.pi / 2 - (ego.yaw[i] if np.isfinite(ego.yaw[i]) else 0.0)
+    up = next((float(rad[i]) for rad in (ego.travel, ego.motion(), ego.yaw) if np.isfinite(rad[i])), 0.0)
+    x0, y0, turn = ego.x[i], ego.y[i], np.pi / 2 - up
     middle, half = np.zeros(2), 22.0
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
 
@@ -80,17 +107,10 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
     _lanes(axis, log, seen, float(np.abs(middle).max()) + half)
     for name, track in log.tracks.items():
         k = track.at(t, 0.12)
-        if k is None or not np.isfinite(track.yaw[k]) or np.hypot(track.x[k] - x0, track.y[k] - y0) > 150:
+        if k is None or np.hypot(track.x[k] - x0, track.y[k] - y0) > 150:
             continue
         colour = EGO if track is ego else OBJECT if track is other else MOVING if track.moved() > 1.5 else PARKED
-        corners = np.asarray(track.boxes([k])[0].exterior.coords).T
-        known = track is ego or track is other
-        axis.fill(
-            *seen(*corners), fc=colour if known else "none", ec=colour, alpha=0.75 if known else 1, lw=1.2, zorder=6
-        )
-        nose = seen(track.x[k] + np.cos(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]),
-                    track.y[k] + np.sin(track.yaw[k]) * track.length / 2 * np.array([0.5, 1]))  # fmt: skip
-        axis.plot(*nose, color="k" if known else colour, lw=1.5, zorder=7)
+        _box(axis, track, k, seen, colour)
         if colour in (MOVING, EGO, OBJECT):
             past, future = (track.t <= t) & (track.t > t - BEFORE_S), (track.t >= t) & (track.t < t + AFTER_S)
             axis.plot(*seen(track.x[past], track.y[past]), "-", color=colour, lw=1, zorder=5)
@@ -105,6 +125,33 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
     axis.set_aspect("equal")
     axis.tick_params(labelsize=7)
     axis.grid(alpha=0.25)
+
+
+def _box(axis: Any, track: Track, k: int, seen: Any, colour: str) -> None:
+    """Draw the box of a state with a nose in its direction of travel, and its motion as an arrow where the box does not stand along it.
+
+    A state without a heading is a circle in which the box is, however it stands.
+    """
+    x, y, known = track.x[k], track.y[k], colour in {EGO, OBJECT}
+    motion, reach = track.motion()[k], np.array([0.25, 0.5]) * track.length
+    if np.isfinite(track.yaw[k]):
+        corners = np.asarray(track.boxes([k])[0].exterior.coords).T
+        edge = WARNING if track.doubted[k] else colour
+        axis.fill(
+            *seen(*corners), fc=colour if known else "none", ec=edge, alpha=0.75 if known else 1, lw=1.2, zorder=6
+        )
+        # a box that travels backwards has its nose at its rear
+        nose = seen(x + np.cos(track.travel[k]) * reach, y + np.sin(track.travel[k]) * reach)
+        axis.plot(*nose, color="k" if known else colour, lw=1.5, zorder=7)
+    else:
+        around, radius = np.linspace(0, 2 * np.pi, 40), np.hypot(track.length, track.width) / 2
+        circle = seen(x + radius * np.cos(around), y + radius * np.sin(around))
+        axis.plot(*circle, color=colour if known else WARNING, lw=1.2, ls="--", zorder=6)
+    if np.isfinite(motion) and (track.is_off_motion()[k] or track.doubted[k] or not np.isfinite(track.yaw[k])):
+        tip = seen(
+            x + np.array([0, 1]) * np.cos(motion) * track.length, y + np.array([0, 1]) * np.sin(motion) * track.length
+        )
+        axis.annotate("", tip[:, 1], tip[:, 0], arrowprops={"arrowstyle": "->", "color": WARNING, "lw": 1.5}, zorder=9)
 
 
 def _lanes(axis: Any, log: Recording, seen: Any, reach: float) -> None:
@@ -144,6 +191,7 @@ def _series(axes: list[Any], row: dict[str, Any], ego: Track, other: Track | Non
             speeds.plot(track.t[w], track.speed[w], ".-", color=colour, label=f"speed {name}", ms=3)
             speeds.plot(track.t[w], track.derived_speed()[w], ":", color=colour, label="from positions")
             turns.plot(track.t[w], np.degrees(np.unwrap(track.yaw[w])), color=colour, label=f"heading {name} deg")
+            turns.plot(track.t[w], _beside(track.motion()[w], track.yaw[w]), ":", color=colour, label="of its motion")
     speeds.set_ylabel("m/s")
     if other is not None:
         t, distance, ahead, left = apart(ego, other)
@@ -174,6 +222,12 @@ def _series(axes: list[Any], row: dict[str, Any], ego: Track, other: Track | Non
         axis.tick_params(labelsize=8)
         if axis.get_legend_handles_labels()[0]:
             axis.legend(fontsize=7.5, loc="best")
+
+
+def _beside(motion: Any, yaw: Any) -> Any:
+    """Return directions of motion in degrees, in the turn that is nearest to the headings as they are plotted."""
+    shown = np.unwrap(yaw)
+    return np.degrees(shown + np.angle(np.exp(1j * (motion - shown))))
 
 
 def _edges(log: Recording, ego: Track, which: Any) -> tuple[list[float], list[float]]:
