@@ -114,14 +114,21 @@ sighting AS (
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id, chain_id FROM lane_hole WHERE NOT is_last) h ON h.drive_id = e.drive_id AND h.ego_id = e.ego_id AND h.chain_id = e.chain_id
     WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
 ),
+-- Samples that the recorder wrote, in doubt or not: while it writes one, the object is not out of its sight.
+written_sample AS (
+    SELECT p.drive_id, p.ego_id, p.object_id, p.t_ns
+    FROM object_without_position u
+    JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.object_id = u.object_id
+    WHERE p.distance_m IS NOT NULL
+),
 -- The least distance of the object after its last and before its next sighting. It moves straight on, or brakes or turns as hard as tyres
 -- allow.
 step_with_sightings AS (
     SELECT
         m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_diagonal_m, a.half_diagonal_m), box_half_diagonal_m(NULL, NULL)) AS half_diagonal_m,
         coalesce(
-            g.in_sight AND m.is_unrecorded AND coalesce(b.t_ns, a.t_ns) IS NOT NULL
-            AND (b.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (a.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
+            g.in_sight AND m.is_unrecorded AND coalesce(wb.t_ns, wa.t_ns) IS NOT NULL
+            AND (wb.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (wa.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
         ) AS late,
         CASE WHEN b.along.road = r.road THEN b.along END AS last_place, CASE WHEN a.along.road = r.road THEN a.along END AS next_place,
         CASE WHEN b.along.chain_id = r.chain_id THEN 0.0 ELSE lane_station_error_m() END AS last_error_m,
@@ -143,11 +150,13 @@ step_with_sightings AS (
     FROM missing_step m
     ASOF LEFT JOIN sighting b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.object_id = m.object_id AND b.t_ns <= m.t_ns
     ASOF LEFT JOIN sighting a ON a.drive_id = m.drive_id AND a.ego_id = m.ego_id AND a.object_id = m.object_id AND a.t_ns >= m.t_ns
+    ASOF LEFT JOIN written_sample wb ON wb.drive_id = m.drive_id AND wb.ego_id = m.ego_id AND wb.object_id = m.object_id AND wb.t_ns <= m.t_ns
+    ASOF LEFT JOIN written_sample wa ON wa.drive_id = m.drive_id AND wa.ego_id = m.ego_id AND wa.object_id = m.object_id AND wa.t_ns >= m.t_ns
     JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
     JOIN data_log g ON g.drive_id = m.drive_id
     LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
-    LEFT JOIN track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = b.t_ns
-    LEFT JOIN track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = a.t_ns
+    LEFT JOIN track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = wb.t_ns
+    LEFT JOIN track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = wa.t_ns
 ),
 -- The range of stations in which the object can be.
 station_range AS (

@@ -27,12 +27,17 @@ track_edge AS (
     -- A track that begins or ends with the log is not lost.
     WHERE CASE WHEN lost THEN k_after IS DISTINCT FROM k + 1 AND t_ns < t_end_limit_ns ELSE k_before IS DISTINCT FROM k - 1 AND t_ns > t_begin_limit_ns END
 ),
+-- A sample in doubt does not show where the object went.
+credible_edge AS (
+    FROM track_edge e
+    ANTI JOIN doubt d ON d.drive_id = e.drive_id AND d.actor_id IN (e.object_id, e.ego_id) AND e.t_ns BETWEEN d.t_from_ns AND d.t_to_ns AND (doubts_place(d.quantity) OR d.quantity = 'velocity')
+),
 -- The extrapolated position of the object soon after its track ends, or just before it begins, at its speed there.
 extrapolation AS (
     SELECT
         e.drive_id, e.ego_id, e.object_id, e.lost, e.t_ns, s.t_ns AS t_place_ns,
         e.x_m + e.vx_mps * (s.t_ns - e.t_ns) / 1e9 - s.x_m AS dx_m, e.y_m + e.vy_mps * (s.t_ns - e.t_ns) / 1e9 - s.y_m AS dy_m, s.x_m, s.y_m
-    FROM track_edge e
+    FROM credible_edge e
     JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id
         AND CASE WHEN e.lost THEN s.t_ns > e.t_ns AND s.t_ns <= e.t_ns + track_delay_ns() ELSE s.t_ns < e.t_ns AND s.t_ns >= e.t_ns - track_delay_ns() END
 ),

@@ -239,3 +239,31 @@ def test_a_breach_that_rests_on_credible_samples_is_found(hand: str, quantity: s
     told = doubted(doubted(told, "y", quantity, code), "x", quantity, code, (4.05, 5.05))
     found = judged([told], rules=["ukhc.r126.stopping-gap"])
     assert "fail" in {row["verdict"] for row in found}
+
+
+@HANDS
+@PLACES
+def test_a_doubt_makes_no_lost_track_one_that_is_out_of_sight(hand: str, quantity: str, code: str) -> None:
+    """A recorder may lose a car in plain view for 2.5 s, whatever is in doubt of its samples; after that the car is out of sight."""
+    way = road(hand=hand)
+    ego = moving("ego", way, T, np.full(len(T), 100.0), way.own)
+    told = drive([ego, standing("x", way, T, 130, way.own).keep(T < 3.05)], way.environment, in_sight=True)
+    lateness = {t: row["late"] for t, row in hidden(told).items()}
+    assert next(t for t, late in lateness.items() if late) == pytest.approx(5.6)
+    some = hidden(doubted(told, "x", quantity, code, (2.05, 3.05)))
+    assert {t: row["late"] for t, row in some.items()} == lateness
+    every = hidden(doubted(told, "x", quantity, code))
+    assert {t: row["late"] for t, row in every.items()} == lateness
+
+
+@HANDS
+@PLACES
+def test_a_sample_in_doubt_does_not_lead_behind_a_box(hand: str, quantity: str, code: str) -> None:
+    """Its last sample is behind the box of a van, so that it is out of sight at once; if that sample is in doubt, it may not be."""
+    way = road(hand=hand)
+    ego = moving("ego", way, T, np.full(len(T), 100.0), way.own)
+    van = standing("van", way, T, 112, way.own)
+    told = drive([ego, van, standing("x", way, T, 130, way.own).keep(T < 3.05)], way.environment, in_sight=True)
+    assert min(t for t, row in hidden(told).items() if row["late"]) == pytest.approx(3.1)
+    found = hidden(doubted(told, "x", quantity, code, (2.95, 3.05)))
+    assert min(t for t, row in found.items() if row["late"]) == pytest.approx(5.6)
