@@ -88,7 +88,12 @@ def test_it_agrees_with_the_gate_on_real_results(
 
 
 def test_its_rules_of_matching_are_the_gates() -> None:
-    numbers = (match.NEAR_S, match.NEAR_M, diff.MARGIN_TOLERANCE, diff.INTERVAL_TOLERANCE_S)
+    numbers = (
+        match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S,
+        match.MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M,
+        diff.UNCHANGED_MARGIN_TOLERANCE,
+        diff.UNCHANGED_INTERVAL_TOLERANCE_S,
+    )
     assert numbers == (
         compare_module.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S,
         compare_module.MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M,

@@ -54,12 +54,12 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     tracks = read_tracks(scenario, t_s)
     findings = [
         *sources.correct_swapped_length_and_width(tracks, dataset),
-        *sources.drop_differenced_velocities(tracks),
+        *sources.drop_velocities_from_position_differences(tracks),
         *sources.drop_false_zero_last_velocities(tracks),
     ]
     is_interpolated = sources.actors_with_interpolated_positions(tracks, dataset)
     if is_interpolated.any():
-        findings += sources.give_keyframe_velocities(tracks, is_interpolated, dataset.steps_per_keyframe)
+        findings += sources.set_velocities_from_keyframes(tracks, is_interpolated, dataset.steps_per_keyframe)
     of_ego, notes = _correct_ego_track(tracks, scenario, is_interpolated)
     if not dataset.sizes:
         tracks.size[:] = np.nan
@@ -151,7 +151,7 @@ def _nanoseconds(t_s: Floats) -> Times:
 
 def _signal_states_and_findings(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return the states of all lights, one row per light and step, and findings. A light has the id of its lane."""
-    scenario.refuse_if_over_file_size(len(scenario.lights) * len(t_s), "states of lights")
+    scenario.refuse_if_more_values_than_file_bytes(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
     known_words: set[Any] = set()
     for name, light in scenario.lights.items():

@@ -34,7 +34,7 @@ _READ_UINT: Final = struct.Struct("<I").unpack_from
 _READ_FLOAT: Final = struct.Struct(">d").unpack_from
 
 
-class _EndError(Exception):
+class _EndOfPickleError(Exception):
     """Raised by the operation that ends a pickle."""
 
 
@@ -104,7 +104,7 @@ class _PickleMachine:
                     memo[self.next_memo_number] = stack[-1]
                     self.next_memo_number += 1
                     at += 1
-        except _EndError:
+        except _EndOfPickleError:
             if len(stack) != 1 or self.marks:
                 raise ValueError("it ends within a value") from None
             return stack[0]
@@ -117,7 +117,7 @@ class _PickleMachine:
         return partial(method, width=int(widths[0])) if widths else method
 
     def stop(self, _: int) -> NoReturn:
-        raise _EndError
+        raise _EndOfPickleError
 
     def refuse_operation(self, at: int) -> NoReturn:
         raise PickleError(f"the operation {self.content[at - 1 : at]!r}, which plain values do not need: {_REMEDY}")
@@ -323,13 +323,13 @@ class _PickleMachine:
 
     # ---- names and what is made with them
 
-    def push_name_in_lines(self, at: int) -> int:
+    def push_name_from_two_lines(self, at: int) -> int:
         middle = self.content.index(b"\n", at)
         end = self.content.index(b"\n", middle + 1)
         self.stack.append(allowed_name(self.content[at:middle].decode(), self.content[middle + 1 : end].decode()))
         return end + 1
 
-    def push_name_on_stack(self, at: int) -> int:
+    def push_name_from_stack_top(self, at: int) -> int:
         self.stack.append(allowed_name(*self._pop_values(2)))
         return at
 
@@ -387,6 +387,6 @@ _OPERATIONS: Final = {
     0x29: "push_empty_tuple", 0x74: "push_tuple_since_mark", 0x85: "push_tuple1", 0x86: "push_tuple2", 0x87: "push_tuple3",
     0x7D: "push_empty_dict", 0x64: "push_dict_since_mark", 0x73: "set_item", 0x75: "set_items",
     0x8F: "push_empty_set", 0x90: "append_items", 0x91: "push_list_since_mark",
-    0x63: "push_name_in_lines", 0x93: "push_name_on_stack", 0x52: "create_named_value", 0x62: "set_state_of_value",
+    0x63: "push_name_from_two_lines", 0x93: "push_name_from_stack_top", 0x52: "create_named_value", 0x62: "set_state_of_value",
 }  # fmt: skip
 """Code of an operation (see `pickletools`) -> its method, and the width in bytes of its argument or of the argument's length."""

@@ -63,7 +63,7 @@ _CLASSES_BY_LANE_KIND: Final = (
 )
 _ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _CLASSES_BY_LANE_KIND))
 _DRIVABLE_KINDS: Final = frozenset({"driving", "bus", "taxi", "HOV"})
-_ROAD_TYPES: Final = {
+_ROAD_TYPE_BY_EDGE_TYPE: Final = {
     "motorway": "motorway",
     "motorway_link": "motorway",
     "residential": "town",
@@ -188,7 +188,7 @@ def _bounded_lane(
     return BoundedLane(
         str(element.attrib["id"]), left=_parallel_line(middle, half), right=_parallel_line(middle, -half),
         kind=kind, drivable=kind in _DRIVABLE_KINDS,
-        road_type=_ROAD_TYPES.get((edge.get("type") or "").removeprefix("highway.")),
+        road_type=_ROAD_TYPE_BY_EDGE_TYPE.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
         limits=() if posted is None else ((0.0, 1.0, posted),),
     )  # fmt: skip

@@ -55,7 +55,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     elif kind == "possible":
         why = descriptions.why_gate_excludes(gate, finding_id)
     elif entry is not None and entry.standing == "new":
-        why = f"before: {descriptions.other_verdict_words(entry)}: {entry.why}"
+        why = f"before: {descriptions.words_for_verdict_of_other_result(entry)}: {entry.why}"
     elif entry is not None and entry.standing == "changed":
         why = entry.why
     return BaselineStatus(kind, _status_label(gate, kind), why)
