@@ -28,7 +28,7 @@ MAX_LINES: Final = 50
 MOST_CHANGED_RULES: Final = 2
 """Largest number of changed rules that a sentence names; it counts the others."""
 
-DIFF_SCHEMA: Final = 1
+DIFF_SCHEMA_VERSION: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 
 DIFF_STATUS_TITLES: Final = {
@@ -173,7 +173,7 @@ def exit_sentence(n_failing: int, fail_on: str, unjudged_phrase: str = "") -> st
 def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return a difference as JSON: all entries, and the exit code."""
     content = {
-        "diff_schema": DIFF_SCHEMA,
+        "diff_schema": DIFF_SCHEMA_VERSION,
         "exit": {
             "code": int(exit_code(difference, failing, fail_on)),
             "why": exit_summary(difference, failing, fail_on).partition(": ")[2],
