@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _RESERVED_CHARACTERS_BY_PART: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """The characters reserved for each part; if page 2 has no space for some texts, it contains their number."""
-_FIRST_SERVED_PARTS: Final = ("broken", "reasons")
+_PARTS_THAT_GET_FREE_SPACE_FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
 _OMISSIBLE_PARTS: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
@@ -169,7 +169,7 @@ def fit_conduct_lists_and_return_further_pages(
         parts = _parts_with_less_space(parts, -spare)
     rooms = [room for *_, room in parts]
     for wanted_characters in (_least_characters, _full_characters):
-        for first in _FIRST_SERVED_PARTS:
+        for first in _PARTS_THAT_GET_FREE_SPACE_FIRST:
             for i, (told, name, _) in enumerate(parts):
                 if name == first:
                     more = min(max(wanted_characters(told[name], name) - rooms[i], 0), max(spare, 0))

@@ -13,7 +13,7 @@ from drivelint.pictures.frames import EncodedImage, FrameError, RawImage
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-MOST_WIDTH_HEIGHT_PX: Final = (640, 480)
+LARGEST_WIDTH_AND_HEIGHT_PX: Final = (640, 480)
 """The greatest width and height of a picture."""
 LOWER_QUALITY_ABOVE_BYTES: Final = 30_000
 """A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
@@ -94,7 +94,7 @@ def _pillow_image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
 
 def _shrink_factor(image: Image.Image) -> int:
     """Return the whole number by which the sides of an image are divided."""
-    return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_WIDTH_HEIGHT_PX, strict=True)))
+    return max(1, *(-(-side // most) for side, most in zip(image.size, LARGEST_WIDTH_AND_HEIGHT_PX, strict=True)))
 
 
 def _open_image(image: EncodedImage) -> Image.Image:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     IsOutput = Callable[[str], bool]
     """Returns whether an absolute path without links is an output of the run."""
 
-ABSENT: Final = "absent"
+ABSENT_PATH_STATE: Final = "absent"
 
 
 def file_sha256(path: Path | str) -> str:
@@ -41,7 +41,7 @@ def path_state_if_known(path: str, is_output: IsOutput) -> str | None:
             return f"file {file_sha256(path)} {real}"
         return f"folder {_hash_of_listing(path, real, is_output)} {real}" if S_ISDIR(mode) else None
     except (FileNotFoundError, NotADirectoryError):
-        return ABSENT
+        return ABSENT_PATH_STATE
     except (OSError, ValueError):
         return None
 

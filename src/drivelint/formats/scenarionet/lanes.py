@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.formats.scenarionet.scenario import Scenario
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_MARKINGS: Final = {
+_MARKING_BY_LINE_TYPE: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
 """The part of a type between ROAD_LINE_ and the colour -> marking. Missing: double lines that may be crossed from one side only."""
@@ -113,7 +113,8 @@ def _markings_of_sides(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]
         if end > begin:
             word = str(scenario.features.get(name, {}).get("type"))
             marking = next(
-                (marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None
+                (marking for part, marking in _MARKING_BY_LINE_TYPE.items() if word.startswith(f"ROAD_LINE_{part}_")),
+                None,
             )
             marks.append(Mark(("left", "right")[side], begin, end, marking))
     known = {mark.side for mark in marks}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
 takes_mapping: Final = False
 _PICKLE_PROTOCOLS: Final = (2, 3, 4, 5)
-_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in SIGNAL_STATE_BY_WORD.items()}
+_CODE_BY_LIGHT_WORD: Final = {word: SIGNAL_STATES.index(state) for word, state in SIGNAL_STATE_BY_WORD.items()}
 
 
 def accepts(probe: Probe) -> bool:
@@ -162,9 +162,11 @@ def _signal_states_and_findings(scenario: Scenario, t_s: Floats) -> tuple[pa.Tab
             where = f"dynamic_map_states[{name[:100]!r}]['state']['object_state']"
             raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
         ids.append(name)
-        codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
+        codes.append(np.array([_CODE_BY_LIGHT_WORD.get(word, -1) for word in words], np.int8))
         known_words.update(words)
-    unread = {word[:100] for word in known_words - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
+    unread = {
+        word[:100] for word in known_words - _CODE_BY_LIGHT_WORD.keys() - {None} if word and "UNKNOWN" not in word
+    }
     if not ids:
         return None, []
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))

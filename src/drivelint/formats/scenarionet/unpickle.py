@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _ARRAY_NAME: Final = AllowedName("array")
 _KEY_TYPES: Final = frozenset({str, int, float, bool, type(None)})
 _DAMAGE_ERRORS: Final = (ValueError, TypeError, AttributeError, OverflowError, MemoryError, LookupError)
-_REMEDY: Final = "copy or write it again"
+_DAMAGE_REMEDY: Final = "copy or write it again"
 _READ_UINT: Final = struct.Struct("<I").unpack_from
 _READ_FLOAT: Final = struct.Struct(">d").unpack_from
 
@@ -49,9 +49,11 @@ def load(content: bytes) -> Any:
     except PickleError as error:
         raise PickleError(f"byte {machine.at}: {error}") from None
     except (IndexError, struct.error):
-        raise PickleError(f"it is cut off or damaged at byte {machine.at} of {len(content)}: {_REMEDY}") from None
+        raise PickleError(
+            f"it is cut off or damaged at byte {machine.at} of {len(content)}: {_DAMAGE_REMEDY}"
+        ) from None
     except _DAMAGE_ERRORS as error:
-        raise PickleError(f"it is damaged at byte {machine.at} ({error}): {_REMEDY}") from None
+        raise PickleError(f"it is damaged at byte {machine.at} ({error}): {_DAMAGE_REMEDY}") from None
 
 
 class _PickleMachine:
@@ -120,7 +122,9 @@ class _PickleMachine:
         raise _EndOfPickleError
 
     def refuse_operation(self, at: int) -> NoReturn:
-        raise PickleError(f"the operation {self.content[at - 1 : at]!r}, which plain values do not need: {_REMEDY}")
+        raise PickleError(
+            f"the operation {self.content[at - 1 : at]!r}, which plain values do not need: {_DAMAGE_REMEDY}"
+        )
 
     # ---- values
 
@@ -318,7 +322,7 @@ class _PickleMachine:
         if type(target) is not dict or len(values) % 2:
             raise TypeError("keys and values for something that is not a dict")
         if not _KEY_TYPES.issuperset(map(type, keys)):
-            raise PickleError(f"a key that is neither text nor number: {_REMEDY}")
+            raise PickleError(f"a key that is neither text nor number: {_DAMAGE_REMEDY}")
         target.update(zip(keys, values[1::2], strict=True))
 
     # ---- names and what is made with them
@@ -358,7 +362,7 @@ class _PickleMachine:
         """Return the bytes that protocol 2 writes as a text."""
         self.bytes_left_to_copy -= len(text)
         if self.bytes_left_to_copy < 0:
-            raise PickleError(f"more bytes than the file has: {_REMEDY}")
+            raise PickleError(f"more bytes than the file has: {_DAMAGE_REMEDY}")
         return text.encode("latin-1")
 
     def set_state_of_value(self, at: int) -> int:

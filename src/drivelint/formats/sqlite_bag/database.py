@@ -46,7 +46,7 @@ def is_sqlite(path: Path) -> bool:
 def open_database(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a file of a bag, and check its tables. Errors: `TraceError` if it is damaged, not closed, or no bag."""
     _refuse_incomplete_file(path)
-    with convert_errors(path):
+    with convert_sqlite_errors(path):
         connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
         try:
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_CHUNK_BYTES)
@@ -60,7 +60,7 @@ def open_database(path: Path) -> Iterator[sqlite3.Connection]:
 
 
 @contextmanager
-def convert_errors(path: Path) -> Iterator[None]:
+def convert_sqlite_errors(path: Path) -> Iterator[None]:
     """Convert errors of SQLite about a file to `TraceError`."""
     try:
         yield

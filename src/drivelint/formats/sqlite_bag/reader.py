@@ -36,7 +36,7 @@ MOST_TOPICS: Final = (1 << 16) - 1
 """MCAP numbers schemas and channels with 16 bits."""
 NO_DEFINITION_ENCODING: Final = ""
 """The encoding of a schema whose message definition is not known."""
-_MOST_SAMPLES: Final = 20
+_MOST_SAMPLE_MESSAGES: Final = 20
 """The definition of a type that has several is chosen by so many of its longest messages."""
 _LATEST_TIME_NS: Final = (1 << 63) - 1
 _GAPS_TEXT: Final = (
@@ -193,7 +193,7 @@ class SqliteFile(Container):
         rows = connection.execute(
             "SELECT messages.rowid, data FROM messages JOIN topics ON topics.id = topic_id WHERE type = ? "
             "ORDER BY length(data) DESC, messages.rowid LIMIT ?",
-            (kind, _MOST_SAMPLES),
+            (kind, _MOST_SAMPLE_MESSAGES),
         )
         channel = Channel(0, "", "cdr", {}, schema_id)
         return [RowMessage(channel, 0, data, row) for row, data in rows if isinstance(data, bytes)]
