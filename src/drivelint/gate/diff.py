@@ -50,9 +50,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     entries: list[ComparedFinding] = []
     gone: list[ComparedFinding] = []
     for drive_id in dict.fromkeys([*new_lookup.findings, *base_id_by_new_id]):
-        found, left = _new_and_base_only_entries_of_drive(
-            base_lookup, new_lookup, base_id_by_new_id.get(drive_id), drive_id
-        )
+        found, left = _entries_of_drive(base_lookup, new_lookup, base_id_by_new_id.get(drive_id), drive_id)
         entries += found
         gone += left
     both = [(new_lookup.drives[now], base_lookup.drives[was]) for now, was in base_id_by_new_id.items()]
@@ -85,7 +83,7 @@ def _is_much_shorter(now: Row, was: Row) -> bool:
     return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE_OF_BASE_DRIVE * lasted)
 
 
-def _new_and_base_only_entries_of_drive(
+def _entries_of_drive(
     base_lookup: ResultLookup, new_lookup: ResultLookup, base_id: str | None, drive_id: str
 ) -> tuple[list[ComparedFinding], list[ComparedFinding]]:
     """Return the entries of one drive: for the findings of the new result, and for the findings that only the base result has."""
@@ -397,7 +395,5 @@ def _covers_time(verdict: Row, finding: TimedFinding, drive: Row) -> bool:
     if not times:
         return True
     start, end = match.seconds_since_start(min(times), drive), match.seconds_since_start(max(times), drive)
-    return (
-        start - match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S <= finding.end_s
-        and finding.start_s <= end + match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
-    )
+    slack_s = match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
+    return start - slack_s <= finding.end_s and finding.start_s <= end + slack_s
