@@ -242,7 +242,7 @@ def _write_parquet_and_return_file_sizes(
     target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool
 ) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
-    tables["actor_state"] = canonical.with_empty_frames(tables["actor_state"], trace)
+    tables["actor_state"] = canonical.with_rows_of_times_without_actors(tables["actor_state"], trace)
     names = [*CONVERTED_TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
     about = {canonical.AS_RECORDED_KEY: "yes"} if as_recorded else {}
     contents = {

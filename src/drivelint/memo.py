@@ -36,7 +36,7 @@ SQL_CODE_GLOBS: Final = (
 """The files of the package that read SQL and rules."""
 MOST_FACTS_IN_FILE: Final = 4096
 """The largest number of facts in a file. If there are more, only the facts that this process has used are written."""
-MOST_FILES_OF_OTHER_VERSIONS: Final = 5
+MOST_KEPT_FILES_OF_OTHER_VERSIONS: Final = 5
 """The number of files of other drivelint versions that are kept, since several environments may use the cache in turn."""
 
 
@@ -108,7 +108,7 @@ class Memo(Generic[T]):
                 part.write(msgspec.msgpack.encode(facts, enc_hook=str))
             Path(part.name).replace(file)
             files = sorted(file.parent.glob(f"{self._name}-*.msgpack"), key=lambda each: each.stat().st_mtime_ns)
-            for old in files[: -1 - MOST_FILES_OF_OTHER_VERSIONS]:
+            for old in files[: -1 - MOST_KEPT_FILES_OF_OTHER_VERSIONS]:
                 old.unlink()
 
     @property

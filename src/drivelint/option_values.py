@@ -43,14 +43,14 @@ def parse_memory(text: str | None) -> int | None:
     return size
 
 
-def one_folder(argument: Path | None, option: Path | None, default: Path) -> Path:
+def folder_of_argument_or_option(argument: Path | None, option: Path | None, default: Path) -> Path:
     """Return the folder that an argument or `--out` names. Errors: `UsageError` if they name different folders."""
     if argument is not None and option not in {None, argument}:
         raise UsageError(f"{argument} and --out {option}: name one folder")
     return argument or option or default
 
 
-def robustness_for(confidence: float | None, robustness: bool | None) -> bool | None:
+def robustness_option_with_confidence(confidence: float | None, robustness: bool | None) -> bool | None:
     """Return the option `robustness`; True if a confidence is given, which needs the copies of all findings.
 
     Errors: `UsageError` for a confidence that is not from 0 to 1, or that is combined with no copies.

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions, JudgedLogs
 
 _INTERRUPTION_CHECK_PERIOD_S: Final = 0.2
-_GRACE_PERIOD_S: Final = 5.0
+_WORKER_END_GRACE_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
 
 
@@ -268,9 +268,9 @@ class _Worker:
         self.start()
 
     def stop(self) -> None:
-        """End the process: wait until it has removed its temporary files, but not longer than `_GRACE_PERIOD_S`, then kill it."""
+        """End the process: wait until it has removed its temporary files, but not longer than `_WORKER_END_GRACE_S`, then kill it."""
         self.pipe.close()
-        self._process.join(_GRACE_PERIOD_S)
+        self._process.join(_WORKER_END_GRACE_S)
         self._process.kill()
         self._process.join()
 

@@ -15,9 +15,9 @@ _INVISIBLE = re.compile(
     r"\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
 )
 """Characters that control a terminal or reverse the reading order; not the line feed."""
-_BUILD_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
+_BUILD_SERVER_COMMAND_PATTERN: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
 """Texts in a job's output that a build server may run as a command (`::error::`, `##[error]`, `##vso[task.x]`)."""
-_UNSAFE_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
+_TERMINAL_UNSAFE_PATTERN_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
 _LINE_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
 _IRREGULAR_PLURALS: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
 
@@ -32,7 +32,7 @@ def escape_invisible(text: str) -> str:
 
 def terminal_safe(text: str) -> str:
     """Return a text, which may come from a log, made safe for a terminal: control characters as codes, no build-server commands."""
-    return _BUILD_COMMAND.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
+    return _BUILD_SERVER_COMMAND_PATTERN.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
 
 
 def one_line(text: str) -> str:
@@ -47,7 +47,7 @@ def terminal_safe_line(text: str) -> str:
 
 def terminal_safe_json(text: str) -> str:
     """Return JSON with the same meaning that is safe for a terminal (see `terminal_safe`)."""
-    return _UNSAFE_IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _TERMINAL_UNSAFE_PATTERN_IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, prefix: str = "") -> str:

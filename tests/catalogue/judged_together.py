@@ -19,7 +19,7 @@ from drivelint.casefile.merged_cases import (
 )
 from drivelint.casefile.scene import Row, case_database, insert_rows
 from drivelint.evaluate import evaluate
-from drivelint.reasons.reason_text import codes_in
+from drivelint.reasons.reason_text import code_and_nested_codes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -106,4 +106,6 @@ def _problem(group: _Group, outcome: CaseOutcome) -> str:
 
 def _codes(outcome: CaseOutcome) -> set[str]:
     rows = [row for row in (*outcome.verdicts, *outcome.findings) if row["cause_code"] is not None]
-    return {code for row in rows for code in codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}"))}
+    return {
+        code for row in rows for code in code_and_nested_codes(row["cause_code"], json.loads(row["cause_args"] or "{}"))
+    }

@@ -35,12 +35,12 @@ def test_a_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     rows = pa.table({name: pa.repeat(pa.scalar(0.0), 2_000_000) for name in ("x_m", "y_m", "yaw_rad")})
     ids = pa.repeat(pa.scalar("a"), 2_000_000).dictionary_encode()
     pq.write_table(rows.append_column("t_ns", pa.repeat(pa.scalar(0), 2_000_000)).append_column("actor_id", ids), path)
-    monkeypatch.setattr(parquet, "FREE_UNPACKED_BYTES", 64 << 20)
+    monkeypatch.setattr(parquet, "UNPACKED_BYTES_ALLOWED_FOR_ANY_FILE", 64 << 20)
     with pytest.raises(TraceError, match=r"2000000 rows in a file of \d+ bytes would unpack to 76 MiB: write it again"):
         read(path)
 
 
 def test_a_long_log_of_parked_cars_is_no_bomb(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = drives.parquet(tmp_path / "log", drives.drive(400))
-    monkeypatch.setattr(parquet, "FREE_UNPACKED_BYTES", 0)
+    monkeypatch.setattr(parquet, "UNPACKED_BYTES_ALLOWED_FOR_ANY_FILE", 0)
     assert read(path, ego="0").tables["actor_state"].num_rows == 1200

@@ -39,7 +39,7 @@ def tree(file: Path) -> lxml.html.HtmlElement:
 @pytest.mark.ci
 def test_a_page_per_topic_and_the_reference(pages: Path) -> None:
     names = {*guide.TOPICS, *site.REFERENCE_PAGES, "index"}
-    beside = {html.STYLESHEET, search.SCRIPT_FILE, search.INDEX_FILE, *site.PICTURES}
+    beside = {html.STYLESHEET, search.SCRIPT_FILE, search.INDEX_FILE, *site.SITE_PICTURE_FILES}
     assert {file.name for file in pages.iterdir()} == {f"{n}.html" for n in names} | beside
     for topic in guide.topics():
         assert tree(pages / f"{topic.name}.html").findtext(".//h1") == topic.title

@@ -13,7 +13,7 @@ import pytest
 
 from drivelint.catalogue.load import read_rule
 from drivelint.errors import RuleError
-from drivelint.pack.finding_sql import is_split_alike_by_shell, param_literal, text_literal
+from drivelint.pack.finding_sql import is_split_by_shell_as_by_parser, param_literal, text_literal
 from drivelint.sql.syntax import with_values
 from tests.fleet_report.command import ran
 from tests.hostile.drive import OVERTAKE, RULE
@@ -138,7 +138,7 @@ def test_a_text_as_sql_is_one_line_and_that_text(text: str) -> None:
     ],
 )
 def test_what_duckdbs_shell_would_read_otherwise_is_known(sql: str, alike: bool) -> None:
-    assert is_split_alike_by_shell(sql) is alike
+    assert is_split_by_shell_as_by_parser(sql) is alike
 
 
 @pytest.mark.parametrize("char", ["\x1b", "\x00", "\u202e", "\u2066", "\u2028", "\x85", "\x0c"])

@@ -11,7 +11,12 @@ from drivelint.catalogue import load_rules
 from drivelint.catalogue.header import EXCUSABLE_RULE_TAG
 from drivelint.incident.breaches import ADVICE_VERBS, reason_without_advice
 from drivelint.incident.conduct import conduct_texts_and_counts
-from drivelint.incident.fitting import UndecidedReason, extract_shared_reasons, first_fitted_texts, fit_conduct_lists
+from drivelint.incident.fitting import (
+    UndecidedReason,
+    first_fitted_texts,
+    fit_conduct_lists_and_return_further_pages,
+    remove_and_return_shared_reasons,
+)
 from drivelint.reasons.reason_text import texts_of_shared_codes
 
 S = 1_000_000_000
@@ -45,7 +50,7 @@ def finding(rule: str, copies: tuple[int, int] | None, **said: Any) -> dict[str,
 
 def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
     found = conduct_texts_and_counts(verdicts, findings, RULES, SPAN, 0, is_about_contact=touched)
-    fit_conduct_lists([found], 0, 0)
+    fit_conduct_lists_and_return_further_pages([found], 0, 0)
     return found
 
 
@@ -125,7 +130,7 @@ REASONS = [
 def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
     """Twenty reasons whose titles are too long for the page are told, the longest by the number of their rules."""
     party: dict[str, Any] = {"reasons": list(REASONS)}
-    fit_conduct_lists([party], 0, 0)
+    fit_conduct_lists_and_return_further_pages([party], 0, 0)
     shown, more, is_short = party["reasons"]
     assert (len(shown), more, is_short) == (20, 0, True)
     assert shown[0] == "Why number 00 (20 rules)"
@@ -135,14 +140,14 @@ def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
 
 def test_reasons_come_before_what_the_other_lists_would_take() -> None:
     party: dict[str, Any] = {"kept": ["a measure of a rule that was kept"] * 200, "reasons": list(REASONS)}
-    fit_conduct_lists([party], 0, 0)
+    fit_conduct_lists_and_return_further_pages([party], 0, 0)
     assert party["reasons"].more == 0
     assert party["kept"].more > 100
 
 
 def test_reasons_that_do_not_fit_are_counted() -> None:
     party: dict[str, Any] = {"reasons": list(REASONS)}
-    fit_conduct_lists([party], 0, 3300)
+    fit_conduct_lists_and_return_further_pages([party], 0, 3300)
     assert len(party["reasons"].texts) + party["reasons"].more == 20
     assert party["reasons"].more > 0
 
@@ -150,10 +155,10 @@ def test_reasons_that_do_not_fit_are_counted() -> None:
 def test_what_is_undecided_of_both_for_the_same_reason_is_told_once() -> None:
     first: dict[str, Any] = {"reasons": REASONS[:3]}
     second: dict[str, Any] = {"reasons": [*REASONS[1:4], REASONS[0]._replace(titles=("another",))]}
-    assert extract_shared_reasons([first, second]) == {"reasons": REASONS[1:3]}
+    assert remove_and_return_shared_reasons([first, second]) == {"reasons": REASONS[1:3]}
     assert first["reasons"] == REASONS[:1]
     assert second["reasons"] == [REASONS[3], REASONS[0]._replace(titles=("another",))]
-    assert extract_shared_reasons([{"reasons": REASONS}, {"not_judged": "a pedestrian"}]) == {"reasons": []}
+    assert remove_and_return_shared_reasons([{"reasons": REASONS}, {"not_judged": "a pedestrian"}]) == {"reasons": []}
 
 
 def test_texts_that_do_not_fit_are_counted() -> None:

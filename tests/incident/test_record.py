@@ -10,7 +10,7 @@ from drivelint.drive import declared_events
 from drivelint.drive.conditions import DRIVE_CONDITION_VALUES
 from drivelint.facts import toml_beside
 from drivelint.incident import record
-from drivelint.incident.record import elements_by_presence
+from drivelint.incident.record import data_elements_by_presence
 from drivelint.sql.store import arrow_schemas
 
 ELEMENTS = toml_beside(record.__file__, "elements.toml")
@@ -33,7 +33,7 @@ def tables(**rows: list[dict[str, Any]]) -> dict[str, pa.Table]:
 
 
 def absent(given: dict[str, pa.Table], log: dict[str, Any]) -> set[str]:
-    return {name for source in elements_by_presence(given, log, "ego") for name in source.absent}
+    return {name for source in data_elements_by_presence(given, log, "ego") for name in source.absent}
 
 
 def test_every_place_exists() -> None:
@@ -69,5 +69,5 @@ def test_what_is_held_is_not_absent() -> None:
 
 def test_speed_that_was_computed_is_no_record() -> None:
     given = tables(actor_state=[{"vx_mps": 1.0}], quality=[{"check_id": "velocity_derived"}])
-    derived = {name for source in elements_by_presence(given, {}, "ego") for name in source.derived}
+    derived = {name for source in data_elements_by_presence(given, {}, "ego") for name in source.derived}
     assert derived == {"vehicle speed"}

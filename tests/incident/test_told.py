@@ -14,7 +14,7 @@ import pytest
 from drivelint.drive.trace import TURNED_FRAME_CHECK
 from drivelint.incident import sheet_html
 from drivelint.incident.conduct import conduct_with_party_name
-from drivelint.incident.fitting import UndecidedReason, fit_conduct_lists
+from drivelint.incident.fitting import UndecidedReason, fit_conduct_lists_and_return_further_pages
 from drivelint.incident.judge import EgoRows
 from drivelint.incident.place import coordinates_source_text, driving_side_text
 from drivelint.incident.sheet import template_values
@@ -218,6 +218,6 @@ def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
         },
         {"broken": ["b" * 140], "kept": ["k" * 60] * 8, "excused": [], "reasons": []},
     ]
-    fit_conduct_lists(parties, 2, taken)
+    fit_conduct_lists_and_return_further_pages(parties, 2, taken)
     assert [told["broken"].more for told in parties] == [0, 0]
     assert (parties[0]["kept"].more > 0) is (taken > 0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.pack.bag import Problem, explanation_text, sha256_of
 from drivelint.pack.consistency import problems_and_content
-from drivelint.pack.contents import findings_with_sql_text
+from drivelint.pack.contents import phrase_on_findings_with_sql
 from drivelint.pack.statement import (
     FILES_IN_STATEMENT,
     STATEMENT_FILE,
@@ -31,11 +31,11 @@ def test_an_overtake_under_two_profiles_is_one_finding_of_a_pack() -> None:
     entries = [
         {"finding_id": name, "sql": None if name == "c" else f"data/findings/{name}/finding.sql"} for name in "abc"
     ]
-    assert findings_with_sql_text(rows, entries) == (
+    assert phrase_on_findings_with_sql(rows, entries) == (
         "1 of 2 findings has SQL that computes the margin (3 rows, 2 findings: an overtake under two profiles counts once)"
     )
-    assert findings_with_sql_text(rows[2:], entries) == "0 of 1 finding have SQL that computes the margin"
-    assert findings_with_sql_text(rows[:1], entries) == "1 of 1 finding has SQL that computes the margin"
+    assert phrase_on_findings_with_sql(rows[2:], entries) == "0 of 1 finding have SQL that computes the margin"
+    assert phrase_on_findings_with_sql(rows[:1], entries) == "1 of 1 finding has SQL that computes the margin"
 
 
 def statement(manifest_sha256: str) -> bytes:

@@ -56,7 +56,7 @@ def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
     code, arguments = reason_text.parse_reason(reason)
     assert reason_text.sentence_if_it_has_advice(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
     assert reason_text.sentence_if_it_has_advice("stood", {"braked": "it"}, 0, OWN) is None
-    assert reason_text.codes_in(code, arguments) == {"stood", "came_by"}
+    assert reason_text.code_and_nested_codes(code, arguments) == {"stood", "came_by"}
 
 
 @pytest.mark.parametrize("text", ["plain words", '{"code":', '{"code":1, "args": 2}', "{}", ""])

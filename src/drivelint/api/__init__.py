@@ -110,7 +110,7 @@ def check(
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
             raise UsageError("--keep-db writes a file: name its folder with --out DIR")
-        robustness = option_values.robustness_for(confidence, robustness)
+        robustness = option_values.robustness_option_with_confidence(confidence, robustness)
         day = option_values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(
             options.to_path(baseline),

@@ -45,7 +45,7 @@ from drivelint.catalogue.rule_file import in_order_of_lines
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
 from drivelint.phrases import nearest_word
-from drivelint.reasons.reason_text import codes_in
+from drivelint.reasons.reason_text import code_and_nested_codes
 from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
@@ -331,7 +331,7 @@ def first_problem_and_reason_codes_of_merged_cases(
             outcome = merged_cases.judge([rule], merged_cases.merge_cases(group, key), group[0].params)[rule.id]
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
-                    codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
+                    codes.update(code_and_nested_codes(row["cause_code"], json.loads(row["cause_args"] or "{}")))
             if wrong := first_unexpected_merged_case(cases, group, outcome):
                 case, message = wrong
                 return f"{case_location(rule, case)}: as one of {where}: {message}; does each join have {key}?", codes

@@ -87,7 +87,7 @@ def demo(
     """
     from drivelint import demo
 
-    written = demo.write(place := option_values.one_folder(folder, out, Path("demo")))
+    written = demo.write(place := option_values.folder_of_argument_or_option(folder, out, Path("demo")))
     typer.echo(f"{place}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
     typer.echo(demo.check_command(place, sys.argv[0]))
 

@@ -170,7 +170,7 @@ def check(
     from drivelint.cli.receipts import StoredRunOfCheck
 
     settings_file = _find_and_print_settings_file(quiet=quiet)
-    robustness = option_values.robustness_for(confidence, robustness)
+    robustness = option_values.robustness_option_with_confidence(confidence, robustness)
     day = option_values.parse_today(today)
     receipts = StoredRunOfCheck(arguments, day, settings_file)
     with say_earlier_folder_on_failure(out):

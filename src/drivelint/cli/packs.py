@@ -90,7 +90,7 @@ def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) ->
     """Write a pack and print a summary of its content; with `on_stderr` on stderr."""
     from drivelint.pack import write_pack
     from drivelint.pack.audits import packed_findings_text
-    from drivelint.pack.contents import findings_with_sql_text
+    from drivelint.pack.contents import phrase_on_findings_with_sql
     from drivelint.result.load import load_result
 
     told = run_interruptible(lambda: write_pack(request))
@@ -98,7 +98,7 @@ def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) ->
     if left is not None:  # an audit
         counted = packed_findings_text(request.out, told)
     else:
-        counted = findings_with_sql_text(load_result(request.folder).findings.to_pylist(), findings)
+        counted = phrase_on_findings_with_sql(load_result(request.folder).findings.to_pylist(), findings)
     signed = "signed" if request.key else "not signed"
     less = f"; {plural(left, 'less severe finding')} left out (drivelint pack --findings all)" if left else ""
     copies = told.get("n_copies")

@@ -14,7 +14,7 @@ from drivelint.formats.limits import read_within_limits
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
 from drivelint.formats.osi.trace_file import may_be_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping_and_remedy
-from drivelint.formats.search import why_not_followed, why_unreadable
+from drivelint.formats.search import why_link_not_followed, why_unreadable
 from drivelint.formats.tables.mapping import refuse_unknown_mapping
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: {why}")
     if path.is_dir():
         if not is_drive_folder(path):
-            why = why_not_followed(path) or (
+            why = why_link_not_followed(path) or (
                 "not a folder of one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log "
                 "of Argoverse 2 or 123D: give the files in it"
             )

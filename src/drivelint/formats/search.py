@@ -80,7 +80,7 @@ def is_pipe_or_device(path: Path | str) -> bool:
     return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)  # noqa: PTH110, PTH112, PTH113 - no error for long names
 
 
-def why_not_followed(path: Path) -> str | None:
+def why_link_not_followed(path: Path) -> str | None:
     """Return why a folder that is not a drive was not searched, and the remedy; None if it is not a link."""
     if not path.is_symlink():
         return None

@@ -28,7 +28,7 @@ MAX_LINES: Final = 50
 MOST_CHANGED_RULES: Final = 2
 """Largest number of changed rules that a sentence names; it counts the others."""
 
-DIFF_SCHEMA: Final = 1
+DIFF_SCHEMA_VERSION: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 
 DIFF_STATUS_TITLES: Final = {
@@ -173,7 +173,7 @@ def exit_sentence(n_failing: int, fail_on: str, unjudged_phrase: str = "") -> st
 def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return a difference as JSON: all entries, and the exit code."""
     content = {
-        "diff_schema": DIFF_SCHEMA,
+        "diff_schema": DIFF_SCHEMA_VERSION,
         "exit": {
             "code": int(exit_code(difference, failing, fail_on)),
             "why": exit_summary(difference, failing, fail_on).partition(": ")[2],
@@ -197,7 +197,7 @@ def finding_line(entry: ComparedFinding) -> str:
     draft = "" if entry.stable else ", draft"
     margin = "" if entry.margin is None or entry.worse else f", margin {number(entry.margin, entry.unit)}"
     head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
-    return f"{head}{_other_verdict_phrase(entry)}"
+    return f"{head}{_phrase_on_other_result(entry)}"
 
 
 def more_rows_than_findings_sentence(entries: Sequence[ComparedFinding]) -> str:
@@ -207,13 +207,13 @@ def more_rows_than_findings_sentence(entries: Sequence[ComparedFinding]) -> str:
     return counts.rows_and_findings_sentence(len(entries), n_findings(entries), has_profile_repeats=is_of_profiles)
 
 
-def _other_verdict_phrase(entry: ComparedFinding) -> str:
+def _phrase_on_other_result(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
-    return f" ({'the base says' if entry.standing == 'new' else 'now'} {other_verdict_words(entry)}: {entry.why})"
+    return f" ({'the base says' if entry.standing == 'new' else 'now'} {words_for_verdict_of_other_result(entry)}: {entry.why})"
 
 
-def other_verdict_words(entry: ComparedFinding) -> str:
+def words_for_verdict_of_other_result(entry: ComparedFinding) -> str:
     """Return, in words, the verdict of the other result at the time and place of a finding."""
     return {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
 

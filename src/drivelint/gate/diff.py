@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
 
-MARGIN_TOLERANCE: Final = 0.01
+UNCHANGED_MARGIN_TOLERANCE: Final = 0.01
 """A margin counts as changed if it differs by more than this in its unit, and by more than this fraction of the required value."""
-INTERVAL_TOLERANCE_S: Final = 0.1
+UNCHANGED_INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch counts as changed if its start or end moved by more than this, in seconds."""
 
-LEAST_DURATION_SHARE: Final = 0.9
+LEAST_DURATION_SHARE_OF_BASE_DRIVE: Final = 0.9
 """A drive may have been cut off if it lasts less than this fraction of its duration in the base result."""
 
 _VERDICTS_BY_WEIGHT = ("error", "fail", "unknown", "pass")
@@ -80,7 +80,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
 
 def _is_much_shorter(now: Row, was: Row) -> bool:
     lasts, lasted = now["duration_s"], was["duration_s"]
-    return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE * lasted)
+    return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE_OF_BASE_DRIVE * lasted)
 
 
 def _entries_of_drive(
@@ -142,7 +142,7 @@ def _matched_finding(now: TimedFinding, was: TimedFinding, new_lookup: ResultLoo
     if _margins_differ(now.row, was.row):
         unit = now.row["unit"]
         notes.append(f"margin {number(now.row['margin'], unit)}, was {number(was.row['margin'], unit)}")
-    if max(abs(now.start_s - was.start_s), abs(now.end_s - was.end_s)) > INTERVAL_TOLERANCE_S:
+    if max(abs(now.start_s - was.start_s), abs(now.end_s - was.end_s)) > UNCHANGED_INTERVAL_TOLERANCE_S:
         notes.append(f"{now.start_s:.2f} s to {now.end_s:.2f} s, was {was.start_s:.2f} s to {was.end_s:.2f} s")
     return _compared_finding(
         "changed" if notes else "unchanged", now, was, new_lookup, VerdictAndReason("fail", "; ".join(notes))
@@ -154,7 +154,9 @@ def _margins_differ(now: Row, was: Row) -> bool:
     a, b = now["margin"], was["margin"]
     if a is None or b is None or a == b:
         return bool(a != b)
-    allowed = max(MARGIN_TOLERANCE, MARGIN_TOLERANCE * max(abs(row["required"] or 0.0) for row in (now, was)))
+    allowed = max(
+        UNCHANGED_MARGIN_TOLERANCE, UNCHANGED_MARGIN_TOLERANCE * max(abs(row["required"] or 0.0) for row in (now, was))
+    )
     return not abs(a - b) <= allowed
 
 
@@ -302,11 +304,14 @@ class ResultLookup:
         `drive_id`: the drive's id in this result. The verdicts pass and not applicable count only where ego and object are recorded.
         """
         row = finding.row
-        if gap := self._why_not_judged(drive_id, row):
+        if gap := self._outcome_if_not_judged(drive_id, row):
             return gap
-        assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _why_not_judged has returned a result
+        assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _outcome_if_not_judged has returned a result
         drive = self.drives[drive_id]
-        if drive["duration_s"] is not None and finding.worst_s > drive["duration_s"] + match.NEAR_S:
+        if (
+            drive["duration_s"] is not None
+            and finding.worst_s > drive["duration_s"] + match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
+        ):
             return VerdictAndReason("none", "the log ends before the finding")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
         rows = [each for each in rows if each["profile"] in {row["profile"], None}]
@@ -324,11 +329,11 @@ class ResultLookup:
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
         found = min(said, key=lambda each: _VERDICTS_BY_WEIGHT.index(each.verdict), default=not_applicable)
-        if found.verdict in _FIXED_VERDICTS and (missing := self._why_not_recorded(drive_id, finding)):
+        if found.verdict in _FIXED_VERDICTS and (missing := self._outcome_if_not_recorded(drive_id, finding)):
             return missing
         return found
 
-    def _why_not_recorded(self, drive_id: str, finding: TimedFinding) -> VerdictAndReason | None:
+    def _outcome_if_not_recorded(self, drive_id: str, finding: TimedFinding) -> VerdictAndReason | None:
         """Return an outcome if the ego or the object is not recorded at the finding; None: both are recorded."""
         for what in ("ego", "object"):
             actor = finding.row[f"{what}_id"]
@@ -350,7 +355,7 @@ class ResultLookup:
             return VerdictAndReason(verdict["verdict"], verdict["reason"])
         mine = self.findings.get(verdict["drive_id"], ())
         alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(finding.row)]
-        if any(match.gap_s(other, finding) <= match.NEAR_S for other in alike):
+        if any(match.gap_s(other, finding) <= match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S for other in alike):
             return VerdictAndReason("fail", "the rule still fails, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
             return VerdictAndReason(
@@ -360,7 +365,7 @@ class ResultLookup:
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return VerdictAndReason("unknown", why)
 
-    def _why_not_judged(self, drive_id: str | None, finding: Row) -> VerdictAndReason | None:
+    def _outcome_if_not_judged(self, drive_id: str | None, finding: Row) -> VerdictAndReason | None:
         """Return the reason why the rule was not judged in the drive, as the result of a lookup; None: it was judged."""
         if drive_id is None:
             return VerdictAndReason("none", "the drive was not checked")
@@ -390,4 +395,5 @@ def _covers_time(verdict: Row, finding: TimedFinding, drive: Row) -> bool:
     if not times:
         return True
     start, end = match.seconds_since_start(min(times), drive), match.seconds_since_start(max(times), drive)
-    return start - match.NEAR_S <= finding.end_s and finding.start_s <= end + match.NEAR_S
+    slack_s = match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
+    return start - slack_s <= finding.end_s and finding.start_s <= end + slack_s

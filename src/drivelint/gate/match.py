@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
 
-NEAR_S: Final = 1.0
+MOST_TIME_BETWEEN_MATCHED_FINDINGS_S: Final = 1.0
 """Failing stretches at most this far apart in time are the same if their place agrees."""
-NEAR_M: Final = 5.0
+MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M: Final = 5.0
 """In different logs, the ego's positions at the worst steps of the same finding may be this far apart."""
 
 FindingKey = tuple[str, str, str | None, str | None]
@@ -48,8 +48,8 @@ def base_drive_by_new_drive(base: Sequence[Row], new: Sequence[Row]) -> dict[str
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
     for content in ("sha256", None):
         known = {*same.values()}
-        left = _drive_ids_by_column((row for row in base if row["drive_id"] not in known), content)
-        right = _drive_ids_by_column((row for row in new if row["drive_id"] not in same), content)
+        left = _drive_ids_by_column_value((row for row in base if row["drive_id"] not in known), content)
+        right = _drive_ids_by_column_value((row for row in new if row["drive_id"] not in same), content)
         for key, mine in right.items():
             others = left.get(key, [])
             if content is not None or len(mine) == len(others) == 1:
@@ -57,7 +57,7 @@ def base_drive_by_new_drive(base: Sequence[Row], new: Sequence[Row]) -> dict[str
     return same
 
 
-def _drive_ids_by_column(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
+def _drive_ids_by_column_value(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
     """Return value of a column, or file stem -> sorted ids of the drives with that value."""
     groups = counts.group_rows(drives, lambda row: row[column] if column else PurePath(row["file_name"]).stem)
     return {key: sorted(row["drive_id"] for row in rows) for key, rows in groups.items() if key is not None}
@@ -91,12 +91,16 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
 def may_match(base: TimedFinding, new: TimedFinding, *, same_log: bool) -> bool:
     """Return whether two findings are close enough in time and place to be the same.
 
-    In the same log: at most `NEAR_S` apart. In another log, such as a repeated run: the worst steps are at most `NEAR_S` and `NEAR_M`
+    In the same log: at most `MOST_TIME_BETWEEN_MATCHED_FINDINGS_S` apart. In another log, such as a repeated run: the worst steps are at
+    most `MOST_TIME_BETWEEN_MATCHED_FINDINGS_S` and `MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M`
     apart, or the findings share at least half of their total time. The worst step can be anywhere in a long stretch.
     """
     if same_log:
-        return gap_s(base, new) <= NEAR_S
-    if abs(base.worst_s - new.worst_s) <= NEAR_S and _distance_m(base.row, new.row) <= NEAR_M:
+        return gap_s(base, new) <= MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
+    if (
+        abs(base.worst_s - new.worst_s) <= MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
+        and _distance_m(base.row, new.row) <= MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M
+    ):
         return True
     common = min(base.end_s, new.end_s) - max(base.start_s, new.start_s)
     whole = max(base.end_s, new.end_s) - min(base.start_s, new.start_s)
@@ -105,13 +109,14 @@ def may_match(base: TimedFinding, new: TimedFinding, *, same_log: bool) -> bool:
 
 def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bool:
     """Return whether a finding is a part of a longer finding of the other result."""
-    slack = NEAR_S if same_log else 0.0
+    slack = MOST_TIME_BETWEEN_MATCHED_FINDINGS_S if same_log else 0.0
     longer = finding_key(part.row) == finding_key(whole.row) and part.end_s - part.start_s < whole.end_s - whole.start_s
     return longer and part.start_s >= whole.start_s - slack and part.end_s <= whole.end_s + slack
 
 
 def is_recorded_during(recorded_spans: Iterable[tuple[float, float]], finding: TimedFinding) -> bool:
-    """Return whether an actor is recorded at a finding: at its worst step, and without a gap of more than `NEAR_S` during the finding.
+    """Return whether an actor is recorded at a finding: at its worst step, and without a gap of more than
+    `MOST_TIME_BETWEEN_MATCHED_FINDINGS_S` during the finding.
 
     `recorded_spans`: (start, end) in seconds, in time order.
     """
@@ -119,10 +124,10 @@ def is_recorded_during(recorded_spans: Iterable[tuple[float, float]], finding: T
     for start, end in recorded_spans:
         at_worst |= start <= finding.worst_s <= end
         if end >= finding.start_s and start <= finding.end_s:
-            if start - seen_to > NEAR_S:
+            if start - seen_to > MOST_TIME_BETWEEN_MATCHED_FINDINGS_S:
                 return False
             seen_to = end
-    return at_worst and finding.end_s - seen_to <= NEAR_S
+    return at_worst and finding.end_s - seen_to <= MOST_TIME_BETWEEN_MATCHED_FINDINGS_S
 
 
 def gap_s(a: TimedFinding, b: TimedFinding) -> float:

@@ -147,7 +147,7 @@ def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Map
             raise error_at_key(key, f"unknown key {key!r}; {hint(key, known)}")
     if missing := [key for key in _REQUIRED_KEYS if key not in table]:
         raise error_at_key("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
-    _refuse_wrong_texts(table, error_at_key)
+    _refuse_empty_or_too_long_texts(table, error_at_key)
     for key in _TIME_KEYS:
         if key in table and (
             isinstance(table[key], bool) or not isinstance(table[key], int | float) or not isfinite(table[key])
@@ -163,7 +163,7 @@ def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Map
     return Waiver(where=f"{file}:{head}", expires=expires.isoformat(), **words)
 
 
-def _refuse_wrong_texts(table: Row, error_at_key: Callable[[str, str], UsageError]) -> None:
+def _refuse_empty_or_too_long_texts(table: Row, error_at_key: Callable[[str, str], UsageError]) -> None:
     for key in ("rule", "reason", "owner", *_PATTERN_KEYS):
         if key in table and not (isinstance(table[key], str) and table[key].strip()):
             raise error_at_key(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")

@@ -35,7 +35,7 @@ means that the value is not known, unless the column says otherwise. `drivelint 
 A column of words has only the words of one vocabulary. They are listed with the column, or under *Words*. A rule, a case, a mapping or
 a reader's output with any other word is refused.
 """
-_WORDS_HINT: Final = "drivelint docs dictionary NAME prints one of them."
+_VOCABULARY_HINT: Final = "drivelint docs dictionary NAME prints one of them."
 _MACRO_PATTERN: Final = re.compile(
     r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE
 )
@@ -84,7 +84,7 @@ def text() -> str:
         f"{heading.upper()}\n\n" + "\n".join(map(table_text, column_comments(file)))
         for file, heading in _HEADING_BY_SCHEMA_FILE.items()
     )
-    words = f"WORDS\n\n{_WORDS_HINT}\n\n" + "\n".join(map(_vocabulary_text, vocabularies()))
+    words = f"WORDS\n\n{_VOCABULARY_HINT}\n\n" + "\n".join(map(_vocabulary_text, vocabularies()))
     return "\n".join([_INTRODUCTION, *groups, words])
 
 

@@ -31,7 +31,7 @@ def parse(markdown: str) -> list[Token]:
     """Return the tokens of a page, with ids for its headings and with links to pages of the site."""
     tokens = _MARKDOWN.parse(markdown)
     _set_heading_ids(tokens)
-    _link_to_site_pages(tokens)
+    _redirect_links_to_site_pages(tokens)
     _set_cell_attributes(tokens)
     return tokens
 
@@ -66,7 +66,7 @@ def _set_heading_ids(tokens: Sequence[Token]) -> None:
             seen[slug] += 1
 
 
-def _link_to_site_pages(tokens: Sequence[Token]) -> None:
+def _redirect_links_to_site_pages(tokens: Sequence[Token]) -> None:
     """Change links to files of the repository to links to pages of the site."""
     for token in tokens:
         for child in token.children or ():

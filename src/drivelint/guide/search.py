@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 SCRIPT_FILE: Final = "search.js"
 INDEX_FILE: Final = "search-index.js"
-_WORD: Final = re.compile(r"\w+(?:[.\-]+\w+)*")
+_WORD_PATTERN: Final = re.compile(r"\w+(?:[.\-]+\w+)*")
 
 
 class Section(NamedTuple):
@@ -50,4 +50,4 @@ def sections(tokens: Sequence[Token]) -> Iterator[Section]:
 
 
 def _section(anchor: str, heading: str, texts: Sequence[str]) -> Section:
-    return Section(anchor, heading, " ".join(sorted(set(_WORD.findall(" ".join(texts).lower())))))
+    return Section(anchor, heading, " ".join(sorted(set(_WORD_PATTERN.findall(" ".join(texts).lower())))))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-PICTURES: Final = ("log.svg",)
+SITE_PICTURE_FILES: Final = ("log.svg",)
 """Picture files of the guides."""
 REFERENCE_PAGES: Final = {
     "catalogue": (
@@ -72,7 +72,9 @@ def site_files(commands: Iterable[Command]) -> dict[str, bytes]:
         f"{name}.html": html.page(tokens, name=name, pages=navigation, footer=footer).encode()
         for name, tokens in parsed.items()
     }
-    files |= {name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, search.SCRIPT_FILE, *PICTURES)}
+    files |= {
+        name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, search.SCRIPT_FILE, *SITE_PICTURE_FILES)
+    }
     files[search.INDEX_FILE] = search.index_script(parsed)
     return files
 

@@ -33,7 +33,7 @@ _ADVICE_PATTERN: Final = re.compile(rf": (?:{'|'.join(ADVICE_VERBS)}) .*$")
 _CERTAINTY_ORDER: Final = (SURE, None, POSSIBLE)
 """An event is as certain as the surest of its findings; a finding that was not examined may be surer than one that is only possible."""
 _MOST_LISTED_JUDGED_TIMES: Final = 2
-LOWER_BOUND_CAUSE: Final = "lower_bound"
+LOWER_BOUND_CAUSE_CODE: Final = "lower_bound"
 """The cause code of a verdict whose measured value is a lower bound, because the data end."""
 
 
@@ -66,7 +66,7 @@ def kept_rule_line(rule: Row, rows: Sequence[Row], span_ns: tuple[int, int], dri
     said, about = quoted_title(rule), [_judged_times_text(rows, span_ns, drive_start_ns)]
     if EXCUSABLE_RULE_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
-        least = "at least " if row["cause_code"] == LOWER_BOUND_CAUSE else ""
+        least = "at least " if row["cause_code"] == LOWER_BOUND_CAUSE_CODE else ""
         said = text_with_minus_signs(f"{rule['observes']}{whom} {least}{amount_text(row['observed'], row['unit'])}")
         about.insert(0, f"{SENSE_WORDS.get(rule['sense'], '')}{required_value_text(row, rule)}")
     if any(each["near_miss"] for each in rows):

@@ -24,11 +24,11 @@ _LEFT, _RIGHT = 46.0, CHART_WIDTH_PX - 8.0
 _TOP, _BOTTOM = 8.0, 97.0
 """Top and bottom of the drawn area in percent of a chart's height; that height depends on the free space on the page."""
 _FROM_S, _TO_S = -15.0, 7.0
-_LEAST_HOLE_STEPS: Final = 3
+_LEAST_STEPS_OF_LINE_BREAK: Final = 3
 """A line is interrupted where two values are more than this many steps apart."""
 _LEAST_POINTS_OF_VISIBLE_LINE: Final = 3
 """A line with fewer points is drawn as dots."""
-_MOST_REQUIRED_LINES: Final = 3
+_MOST_LINES_OF_REQUIRED_GAPS: Final = 3
 """A chart of gaps has at most this many lines of required gaps."""
 
 
@@ -71,7 +71,7 @@ def charts_over_time(
                 title=f"required: {row['title']}",
                 label="as driven" if row["profile"] == "observed" else row["profile"] or "",
             )
-            for row in gap_courses[:_MOST_REQUIRED_LINES]
+            for row in gap_courses[:_MOST_LINES_OF_REQUIRED_GAPS]
         ]
         charts.append(_chart_values("Gap from box to box, m", lines, x, from_zero=True))
     if finding_course is not None:
@@ -164,7 +164,7 @@ def _label_positions(line: _ChartLine, x: Axis, y: Axis, line_no: int) -> list[t
 def _svg_path(line: _ChartLine, x: Axis, y: Axis) -> str:
     """Return the SVG path through the values, interrupted where a value is not known or steps are missing."""
     steps = sorted(b - a for a, b in pairwise(line.t))
-    hole = _LEAST_HOLE_STEPS * steps[len(steps) // 2] if steps else math.inf
+    hole = _LEAST_STEPS_OF_LINE_BREAK * steps[len(steps) // 2] if steps else math.inf
     parts, last = [], None
     for at, v in zip(line.t, line.values, strict=True):
         if not math.isfinite(v):

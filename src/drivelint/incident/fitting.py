@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 _RESERVED_CHARACTERS_BY_PART: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """The characters reserved for each part; if page 2 has no space for some texts, it contains their number."""
-_FIRST_SERVED_PARTS: Final = ("broken", "reasons")
+_PARTS_THAT_GET_FREE_SPACE_FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
 _OMISSIBLE_PARTS: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
-_EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
+_UNUSED_LINE_END_CHARACTERS_BY_PART: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
-_CHARACTERS_OF_ALL_PARTS: Final = 3100
+_MOST_CHARACTERS_OF_ALL_PARTS: Final = 3100
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
 _EXPLANATION_CHARACTERS: Final = 150
 """The characters of the sentences that explain the parts in `_OMISSIBLE_PARTS`; they are left out with these parts."""
@@ -29,7 +29,7 @@ _CHARACTERS_OF_A_FURTHER_PAGE: Final = 8400
 """The characters that a page after page 2 has space for."""
 _CHARACTERS_OF_A_HEADING: Final = 110
 """The characters that fit into the space of a heading on such a page."""
-_CHARACTERS_PER_ROW_OF_SECONDS: Final = 120
+_CHARACTERS_IN_SPACE_OF_SECONDS_ROW: Final = 120
 """The characters that fit into the space of one row of the table of seconds."""
 _SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
@@ -41,9 +41,9 @@ _PAGE_LINE_CHARACTERS, _PARTY_LINE_CHARACTERS, _FACT_LINE_CHARACTERS, _HASH_LINE
 """The characters of a line in the widest possible font: across page 1, in a column of the parties or the facts, and beside a hash."""
 _TABLE_LINE_PX, _SENTENCE_LINE_PX = 13.6, 15.7
 """The height of a line in the tables of page 1, and in its first sentences."""
-_MOST_TABLES_HEIGHT_PX: Final = 440
+_LARGEST_HEIGHT_OF_TABLES_PX: Final = 440
 """The greatest height of the finding and the parties on page 1 that leaves enough space for the lists of missing records."""
-_CHARACTERS_PER_HASH_LINE: Final = 125
+_CHARACTERS_IN_SPACE_OF_HASH_LINE: Final = 125
 """The characters in the columns of page 2 that need as much space as one line of the hashes."""
 _PARTY_CELL_KEYS: Final = ("delta_v", "fastest", "lane", "lights")
 
@@ -115,20 +115,20 @@ def is_first_page_full(sheet_values: dict[str, Any]) -> bool:
     return (
         lines * _TABLE_LINE_PX
         + sum(_n_wrapped_lines(each, _PAGE_LINE_CHARACTERS) for each in across) * _SENTENCE_LINE_PX
-        > _MOST_TABLES_HEIGHT_PX
+        > _LARGEST_HEIGHT_OF_TABLES_PX
     )
 
 
 def characters_lost_to_hash_lines(texts: Sequence[str]) -> int:
     """Return the characters that the columns of page 2 lose because the lines with hashes (`texts`) wrap."""
-    return _CHARACTERS_PER_HASH_LINE * sum(_n_wrapped_lines(text, _HASH_LINE_CHARACTERS) - 1 for text in texts)
+    return _CHARACTERS_IN_SPACE_OF_HASH_LINE * sum(_n_wrapped_lines(text, _HASH_LINE_CHARACTERS) - 1 for text in texts)
 
 
 def _n_wrapped_lines(text: str, width: int) -> int:
     return len(wrap(text, width))
 
 
-def extract_shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def remove_and_return_shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Remove the reasons that all parties share, with the same rules, from each party, and return these reasons."""
     given = [told["reasons"] for told in parties if "reasons" in told]
     shared = [reason for reason in given[0] if all(reason in others for others in given[1:])] if len(given) > 1 else []
@@ -138,7 +138,7 @@ def extract_shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"reasons": shared}
 
 
-def fit_conduct_lists(
+def fit_conduct_lists_and_return_further_pages(
     parties: Sequence[dict[str, Any]], unused_rows_of_seconds: int, used_characters: int
 ) -> list[list[ContinuedTexts]]:
     """Cut the lists about both parties so that they fit into two columns with a common limit of characters, and return further pages.
@@ -158,8 +158,8 @@ def fit_conduct_lists(
         if name in told
     ]
     spare = (
-        _CHARACTERS_OF_ALL_PARTS
-        + _CHARACTERS_PER_ROW_OF_SECONDS * unused_rows_of_seconds
+        _MOST_CHARACTERS_OF_ALL_PARTS
+        + _CHARACTERS_IN_SPACE_OF_SECONDS_ROW * unused_rows_of_seconds
         - used_characters
         - sum(room for *_, room in parts)
     )
@@ -169,7 +169,7 @@ def fit_conduct_lists(
         parts = _parts_with_less_space(parts, -spare)
     rooms = [room for *_, room in parts]
     for wanted_characters in (_least_characters, _full_characters):
-        for first in _FIRST_SERVED_PARTS:
+        for first in _PARTS_THAT_GET_FREE_SPACE_FIRST:
             for i, (told, name, _) in enumerate(parts):
                 if name == first:
                     more = min(max(wanted_characters(told[name], name) - rooms[i], 0), max(spare, 0))
@@ -182,11 +182,11 @@ def fit_conduct_lists(
     if not any(told["broken"].more for told in parties if "broken" in told):
         return []
     return _further_pages(
-        [ContinuedTexts(told, name, _texts_without_space(texts, told[name])) for told, name, texts in lists]
+        [ContinuedTexts(told, name, _texts_that_do_not_fit(texts, told[name])) for told, name, texts in lists]
     )
 
 
-def _texts_without_space(texts: Sequence[Any], fitting: FittedTexts) -> list[str]:
+def _texts_that_do_not_fit(texts: Sequence[Any], fitting: FittedTexts) -> list[str]:
     """Return the texts of a part that page 2 does not contain, or contains only in a short form."""
     full = [text.full_text if isinstance(text, UndecidedReason) else text for text in texts]
     return [text for text in full if text not in fitting.texts]
@@ -199,7 +199,7 @@ def _further_pages(lists: Sequence[ContinuedTexts]) -> list[list[ContinuedTexts]
     for told, part, texts in lists:
         on_page: ContinuedTexts | None = None
         for text in texts:
-            needed = len(text) + _EMPTY_LINE_END_CHARACTERS["broken"]
+            needed = len(text) + _UNUSED_LINE_END_CHARACTERS_BY_PART["broken"]
             if needed + _CHARACTERS_OF_A_HEADING * (on_page is None) > room:
                 pages.append([])
                 room, on_page = _CHARACTERS_OF_A_FURTHER_PAGE, None
@@ -255,7 +255,7 @@ def _full_characters(texts: Sequence[Any], part: str) -> int:
 
 def _n_characters(texts: Sequence[str], part: str) -> int:
     """Return the number of characters of texts of a part, with the space between them."""
-    return sum(len(text) + _EMPTY_LINE_END_CHARACTERS.get(part, _SEPARATOR_CHARACTERS) for text in texts)
+    return sum(len(text) + _UNUSED_LINE_END_CHARACTERS_BY_PART.get(part, _SEPARATOR_CHARACTERS) for text in texts)
 
 
 def _fitted_texts_of_part(texts: Sequence[str], part: str, max_characters: int) -> FittedTexts:

@@ -25,10 +25,10 @@ LEAST_SLOWING_MPS2: Final = 1.0
 """A vehicle whose mean deceleration over half a second is less may be coasting."""
 _LEAST_IMPACT_LOSS_MPS2, _LEAST_IMPACT_LOSS_MPS = 12.0, 1.0
 """Tyres cannot brake a vehicle this hard: a loss of speed of this rate and size between two steps is an impact."""
-_STANDING_MPS: Final = 0.5
+_LARGEST_STANDING_SPEED_MPS: Final = 0.5
 """The same value as in the rules (`standing_mps`)."""
-_MEAN_PERIOD_S: Final = 0.5
-_MOST_MERGED_BREAK_S: Final = 0.5
+_ACCELERATION_AVERAGING_PERIOD_S: Final = 0.5
+_LONGEST_BREAK_IN_SLOWING_S: Final = 0.5
 """Two periods of slowing with a shorter break between them are merged."""
 
 
@@ -125,7 +125,11 @@ class MotionOfParties:
         t, v = self.t, self.speed[party] if v is None else v
         start = t[step_no] - over_s
         within = (t >= start - 1.5 * self.step_s) & (t <= t[step_no])
-        if t[0] > start + 1e-9 or np.isnan(v[within]).any() or (np.diff(t[within]) > _MEAN_PERIOD_S).any():
+        if (
+            t[0] > start + 1e-9
+            or np.isnan(v[within]).any()
+            or (np.diff(t[within]) > _ACCELERATION_AVERAGING_PERIOD_S).any()
+        ):
             return float("nan")
         return float((v[step_no] - np.interp(start, t, v)) / over_s)
 
@@ -133,9 +137,9 @@ class MotionOfParties:
         """Return the greatest deceleration (mean of half a second) that ends in the second before a step; 0: none; NaN: not known."""
         ends = np.flatnonzero((self.t > self.t[step_no] - 1.0 + 1e-9) & (self.t <= self.t[step_no] + 1e-9)).tolist()
         means = [
-            self.mean_acceleration_mps2(party, end, _MEAN_PERIOD_S)
+            self.mean_acceleration_mps2(party, end, _ACCELERATION_AVERAGING_PERIOD_S)
             for end in ends
-            if not self.has_sudden_speed_loss(party, end, _MEAN_PERIOD_S)
+            if not self.has_sudden_speed_loss(party, end, _ACCELERATION_AVERAGING_PERIOD_S)
         ]
         return float(np.maximum(0.0, -np.min(means))) if means else math.nan
 
@@ -157,7 +161,7 @@ def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
     """Return a mask of the steps at which a party moves against its heading, faster than a standing vehicle may seem to move."""
     yaw = columns[f"{column_prefix}yaw_rad"]
     along: Floats = columns[f"{column_prefix}vx_mps"] * np.cos(yaw) + columns[f"{column_prefix}vy_mps"] * np.sin(yaw)
-    found: Mask = along < -_STANDING_MPS
+    found: Mask = along < -_LARGEST_STANDING_SPEED_MPS
     return found
 
 
@@ -184,8 +188,10 @@ def is_slowing_known(motion: MotionOfParties, party: int, until_s: float) -> boo
     """Return whether a party's deceleration is known at all recorded steps of the 15 s before `until_s`."""
     t = motion.t
     begin = max(float(t[0]), until_s - SECONDS_BEFORE_MOMENT)
-    steps = np.flatnonzero((t >= begin + _MEAN_PERIOD_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
-    return bool(steps) and not any(np.isnan(motion.mean_acceleration_mps2(party, i, _MEAN_PERIOD_S)) for i in steps)
+    steps = np.flatnonzero((t >= begin + _ACCELERATION_AVERAGING_PERIOD_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
+    return bool(steps) and not any(
+        np.isnan(motion.mean_acceleration_mps2(party, i, _ACCELERATION_AVERAGING_PERIOD_S)) for i in steps
+    )
 
 
 class SlowingPeriod(NamedTuple):
@@ -211,12 +217,13 @@ def slowing_periods(motion: MotionOfParties, party: int, until_s: float) -> list
     """Return the periods in which a party slows by `LEAST_SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
     t, v = motion.t, motion.speed[party]
     steps = np.flatnonzero((t >= until_s - SECONDS_BEFORE_MOMENT) & (t <= until_s + 1e-9))
-    mean = {int(i): motion.mean_acceleration_mps2(party, int(i), _MEAN_PERIOD_S) for i in steps}
+    mean = {int(i): motion.mean_acceleration_mps2(party, int(i), _ACCELERATION_AVERAGING_PERIOD_S) for i in steps}
     sudden = motion.sudden_speed_loss_mask(party)
     hard = [
         i
         for i in steps.tolist()
-        if mean[i] <= -LEAST_SLOWING_MPS2 and not motion.has_sudden_speed_loss(party, i, _MEAN_PERIOD_S)
+        if mean[i] <= -LEAST_SLOWING_MPS2
+        and not motion.has_sudden_speed_loss(party, i, _ACCELERATION_AVERAGING_PERIOD_S)
     ]
     found = [
         SlowingPeriod(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
@@ -225,13 +232,13 @@ def slowing_periods(motion: MotionOfParties, party: int, until_s: float) -> list
     ]
     runs: list[list[int]] = []
     for i in hard:
-        if runs and t[i] - t[runs[-1][-1]] <= _MOST_MERGED_BREAK_S + motion.step_s:
+        if runs and t[i] - t[runs[-1][-1]] <= _LONGEST_BREAK_IN_SLOWING_S + motion.step_s:
             runs[-1].append(i)
         else:
             runs.append([i])
     for run in runs:
         # the deceleration is a mean of the half second before a step: slowing began at the highest speed in it
-        within = np.flatnonzero((t >= t[run[0]] - _MEAN_PERIOD_S - 1e-9) & (t <= t[run[0]]))
+        within = np.flatnonzero((t >= t[run[0]] - _ACCELERATION_AVERAGING_PERIOD_S - 1e-9) & (t <= t[run[0]]))
         first = int(within[::-1][np.argmax(v[within[::-1]])])
         found.append(
             SlowingPeriod(

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from drivelint.incident.motion import MotionOfParties, SlowingPeriod
     from drivelint.result.text import Row
 
-_STANDING_MPS: Final = 0.5
-_MOST_OTHER_ACTORS: Final = 3
+_LARGEST_STANDING_SPEED_MPS: Final = 0.5
+_MOST_LISTED_OTHER_ACTORS: Final = 3
 """At most this many actors that are not parties are described."""
 _LANE_TEXTS: Final = {True: "centre in a lane of its direction", False: "centre in the oncoming lane"}
 
@@ -194,12 +194,18 @@ def other_actor_texts(plan: Mapping[str, Any], scene: Row) -> list[str]:
         about = actors[who]
         size = " x ".join("?" if about[side] is None else f"{about[side]:.2f}" for side in ("length_m", "width_m"))
         mps = about["speed_mps"]
-        moves = "speed not known" if mps is None else "standing" if mps < _STANDING_MPS else f"at {mps:.1f} m/s"
+        moves = (
+            "speed not known"
+            if mps is None
+            else "standing"
+            if mps < _LARGEST_STANDING_SPEED_MPS
+            else f"at {mps:.1f} m/s"
+        )
         apart = float(shapely.distance(ego, shapely.polygons(box_corners_m(about))))
         kind = (about["actor_class"] or "kind not recorded").replace("_", " ")
         told.append(f"{who}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
-    more = [f"{len(told) - _MOST_OTHER_ACTORS} more"] if len(told) > _MOST_OTHER_ACTORS else []
-    return told[:_MOST_OTHER_ACTORS] + more
+    more = [f"{len(told) - _MOST_LISTED_OTHER_ACTORS} more"] if len(told) > _MOST_LISTED_OTHER_ACTORS else []
+    return told[:_MOST_LISTED_OTHER_ACTORS] + more
 
 
 def relative_speed_text(relative_mps: float, closing_mps: float | None) -> str:

@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 
-class _SourceOfElements(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _SourceOfDataElements(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
 
 
-class _RecordedElement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _DataElement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     source: str
     name: str
     held_by: list[str]
     derived_by: str | None = None
 
 
-class _ElementsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    source: dict[str, _SourceOfElements]
-    element: list[_RecordedElement]
+class _DataElementsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    source: dict[str, _SourceOfDataElements]
+    element: list[_DataElement]
 
 
-class ElementsByPresence(NamedTuple):
+class DataElementsByPresence(NamedTuple):
     """The elements of one list: elements that the log contains, elements that are computed from others, and absent elements."""
 
     title: str
@@ -42,22 +42,22 @@ class ElementsByPresence(NamedTuple):
 
 
 @cache
-def _read_elements_file() -> _ElementsFile:
-    return msgspec.convert(toml_beside(__file__, "elements.toml"), _ElementsFile)
+def _read_data_elements_file() -> _DataElementsFile:
+    return msgspec.convert(toml_beside(__file__, "elements.toml"), _DataElementsFile)
 
 
-def elements_by_presence(
+def data_elements_by_presence(
     tables: Mapping[str, pa.Table], drive_row: Mapping[str, Any], actor_id: str
-) -> list[ElementsByPresence]:
+) -> list[DataElementsByPresence]:
     """Return, for each list, which of its elements a drive contains.
 
     `tables`: the tables of `schemas/model.sql`; `drive_row`: the drive's row, with columns of `data_log`; `actor_id`: the first party.
     """
     checks = set(tables["quality"]["check_id"].to_pylist())
     found = []
-    for name, about in _read_elements_file().source.items():
-        told = ElementsByPresence(about.title, [], [], [])
-        for element in (each for each in _read_elements_file().element if each.source == name):
+    for name, about in _read_data_elements_file().source.items():
+        told = DataElementsByPresence(about.title, [], [], [])
+        for element in (each for each in _read_data_elements_file().element if each.source == name):
             held = any(_has_data_at(place, tables, drive_row, actor_id) for place in element.held_by)
             kind = told.absent if not held else told.derived if element.derived_by in checks else told.present
             kind.append(element.name)

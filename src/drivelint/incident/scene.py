@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _DANGER_SPACE_TAG: Final = "danger_space"
-_LABEL_HEIGHT_SHARE: Final = 0.135
+_LABEL_HEIGHT_SHARE_OF_PLAN_VIEW: Final = 0.135
 """Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 8 pt or more."""
 
-_MOST_SAMPLE_DISTANCE_NS: Final = 500_000_000
+_LONGEST_TIME_TO_SAMPLE_NS: Final = 500_000_000
 """An actor is drawn only if one of its samples is at most this far away in time."""
 
 
@@ -41,7 +41,7 @@ def scene_at(scene: Row, actor_states: pa.Table, t_ns: int) -> Row:
         mine = np.flatnonzero((who == actor["actor_id"]) & np.isfinite(columns["x_m"]) & np.isfinite(columns["y_m"]))
         mine = mine[np.argsort(times[mine], kind="stable")]
         t = times[mine]
-        if not len(t) or not t[0] <= t_ns <= t[-1] or np.abs(t - t_ns).min() > _MOST_SAMPLE_DISTANCE_NS:
+        if not len(t) or not t[0] <= t_ns <= t[-1] or np.abs(t - t_ns).min() > _LONGEST_TIME_TO_SAMPLE_NS:
             continue
         nearest = mine[np.abs(t - t_ns).argmin()]
         yaw, speed = columns["yaw_rad"][nearest], np.hypot(columns["vx_mps"][nearest], columns["vy_mps"][nearest])
@@ -72,7 +72,7 @@ def plan_view_at_moment(case: Case) -> dict[str, Any]:
     drawn = other_actor_texts(plan, drawn_scene)
     letters = dict(zip(finding.parties, PARTY_LETTERS, strict=False))
     plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
-    plan["font"] = f"{_LABEL_HEIGHT_SHARE * float(plan['height']):.1f}"
+    plan["font"] = f"{_LABEL_HEIGHT_SHARE_OF_PLAN_VIEW * float(plan['height']):.1f}"
     return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
 
 

@@ -22,10 +22,10 @@ from drivelint.incident.fitting import (
     SHARED_HEADING_CHARACTERS,
     FittedTexts,
     characters_lost_to_hash_lines,
-    extract_shared_reasons,
     first_fitted_texts,
-    fit_conduct_lists,
+    fit_conduct_lists_and_return_further_pages,
     is_first_page_full,
+    remove_and_return_shared_reasons,
 )
 from drivelint.incident.judge import matching_finding
 from drivelint.incident.motion import (
@@ -46,7 +46,7 @@ from drivelint.incident.place import (
     simulator_text,
     weather_and_light_text,
 )
-from drivelint.incident.record import elements_by_presence
+from drivelint.incident.record import data_elements_by_presence
 from drivelint.incident.scene import plan_view_at_moment
 from drivelint.incident.sizes import size_source_text
 from drivelint.incident.words import (
@@ -76,11 +76,11 @@ _UNKNOWN_NUMBER_TEXT: Final = "-"
 _CLIP_NAME_PATTERN: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """The name of a clip from `convert --clip`, see `clip.py`."""
 _CLIP_NOTE: Final = "; values that depend on the time before or after it may differ from those of the log"
-_LONGEST_SENTENCE_CHARACTERS: Final = 330
-_NOTE_CHARACTERS: Final = 370
+_MOST_SENTENCE_CHARACTERS: Final = 330
+_CHARACTERS_RESERVED_PER_NOTE: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
-_WARNING_CHARACTERS: Final = 300
-_MISSING_RECORDS_CHARACTERS: Final = 1050
+_MOST_WARNING_CHARACTERS: Final = 300
+_CHARACTERS_RESERVED_FOR_MISSING_RECORDS: Final = 1050
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_LISTED_CONTACTS: Final = 2
 
@@ -162,7 +162,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "least_share": f"{LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING:.0%}",
         "sure": _certainty_values(case),
         "rests": _contact_by_speed_change_sentence(case, motion),
-        "records": elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
+        "records": data_elements_by_presence(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _fitted_log_warnings(case),
         "again": matching_finding(case.ego_rows.verdicts if finding.is_near_miss else case.ego_rows.findings, row),
         "source": case.source,
@@ -180,7 +180,7 @@ def template_values(case: Case) -> dict[str, Any]:
     told["crowded"] = is_first_page_full(told)
     taken = (
         characters_lost_to_hash_lines([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
-        + _MISSING_RECORDS_CHARACTERS * told["crowded"]
+        + _CHARACTERS_RESERVED_FOR_MISSING_RECORDS * told["crowded"]
     )
     return {**told, **_conduct_values(case, span, MOST_ROWS_OF_SECONDS_TABLE - len(rows), taken)}
 
@@ -206,7 +206,7 @@ def _finding_sentence(finding: NamedFinding) -> str:
         observed += " (of the speed alone, not of its direction; from one step to the next)"
     reason = "" if row["reason_measures"] and observed else row["reason"]
     text = "; ".join(part for part in (reason, observed) if part)
-    return shorten(f"{text[:1].upper()}{text[1:]}", _LONGEST_SENTENCE_CHARACTERS, placeholder=" ...")
+    return shorten(f"{text[:1].upper()}{text[1:]}", _MOST_SENTENCE_CHARACTERS, placeholder=" ...")
 
 
 def _party_names(finding: NamedFinding) -> list[str]:
@@ -277,8 +277,8 @@ def _warning_texts(case: Case) -> list[str]:
 def _fitted_log_warnings(case: Case) -> FittedTexts:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
-    shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warning_texts(case)]
-    return first_fitted_texts(shortened, _WARNING_CHARACTERS)
+    shortened = [shorten(told, _MOST_WARNING_CHARACTERS, placeholder=rest) for told in _warning_texts(case)]
+    return first_fitted_texts(shortened, _MOST_WARNING_CHARACTERS)
 
 
 def _clip_source_texts(case: Case) -> list[str]:
@@ -333,15 +333,15 @@ def _conduct_values(
                 judged.verdicts, findings, rules, span_ns, finding.drive_start_ns, is_about_contact=finding.is_contact
             )
         found.append(told)
-    of_both = extract_shared_reasons(found)
+    of_both = remove_and_return_shared_reasons(found)
     others = [(told["id"], told["letter"]) for told in found][::-1] if len(found) > 1 else [None]
     found = [conduct_with_party_name(told, told["letter"], other) for told, other in zip(found, others, strict=True)]
     of_both = conduct_with_party_name(of_both, "either")
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEADING_CHARACTERS * bool(of_both["reasons"])
-    lines += _NOTE_CHARACTERS * (bool(_warning_texts(case)) + bool(_clip_source_texts(case)))
-    further = fit_conduct_lists([*found, of_both], unused_rows_of_seconds, lines)
+    lines += _CHARACTERS_RESERVED_PER_NOTE * (bool(_warning_texts(case)) + bool(_clip_source_texts(case)))
+    further = fit_conduct_lists_and_return_further_pages([*found, of_both], unused_rows_of_seconds, lines)
     has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
     return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
 

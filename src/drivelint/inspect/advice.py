@@ -19,7 +19,7 @@ SIGNALS_NEEDING_MAP: Final = frozenset(
     }
 )  # fmt: skip
 """Signals that need a map. Without a map, the missing signal is `map` instead of these."""
-REASON_MISSING_ON_ROUTE: Final = {
+REASON_BY_SIGNAL_MISSING_ON_ROUTE: Final = {
     "road_types": "the map does not state the kind of the roads on which the ego drives",
     "speed_limits": "the map has no readable speed limit for the lanes on which the ego drives",
 }
@@ -36,7 +36,7 @@ def reasons_of_never_known_signals(
     for name in (name for name, known in knowledge.items() if not known):
         signal = SIGNAL_OF_CONDITION.get(name, name)
         found[signal] = reason_by_missing_signal.get(
-            signal, REASON_MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}")
+            signal, REASON_BY_SIGNAL_MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}")
         )
     return found
 

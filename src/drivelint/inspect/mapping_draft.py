@@ -13,7 +13,7 @@ from drivelint.sql.words import vocabularies
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-_WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+_WORD_PATTERN: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
 _WORDS_BY_FUSED_WORD: Final[dict[str, str]] = _FACTS["fused"]
 _UNIT_BY_WORD: Final[dict[str, str]] = _FACTS["units"]
@@ -98,7 +98,7 @@ def _field_of_axis(axis: str, words: set[str], bare_words: set[str]) -> str | No
 
 
 def _column_words(column: str) -> set[str]:
-    words = [word.lower() for word in _WORD.findall(column)]
+    words = [word.lower() for word in _WORD_PATTERN.findall(column)]
     return {part for word in words for part in _WORDS_BY_FUSED_WORD.get(word, word).split()}
 
 

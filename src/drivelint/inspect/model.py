@@ -10,7 +10,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 from msgspec import Meta
 
-INSPECT_SCHEMA: Final = 1
+INSPECT_SCHEMA_VERSION: Final = 1
 """Version of the JSON: raised when a key changes its meaning or is removed, but not for new keys."""
 
 
@@ -212,7 +212,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
 class Inspection(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that `drivelint inspect --format json` prints."""
 
-    inspect_schema: Annotated[int, key_description("version of this structure")] = INSPECT_SCHEMA
+    inspect_schema: Annotated[int, key_description("version of this structure")] = INSPECT_SCHEMA_VERSION
     file: File
     content: Content
     problem: Annotated[str | None, key_description("why the file cannot be read as a drive; null: it can")] = None

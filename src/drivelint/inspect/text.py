@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.inspect import model
 
-MAX_ROWS: Final = 12
+MAX_LISTED_TEXTS: Final = 12
 """Largest number of lines shown of a list; the JSON has all of them."""
 _MAX_LISTED_NAMES: Final = 6
 """Largest number of egos or selectors that a line names; it then states how many more there are."""
@@ -103,11 +103,11 @@ def _empty_label_table(label_style: str, **label_options: Any) -> Table:
 
 
 def _first_lines(label: str, texts: Sequence[Text]) -> Iterator[Line]:
-    """Yield the first `MAX_ROWS` texts, and a line with the number of further texts."""
-    for text in texts[:MAX_ROWS]:
+    """Yield the first `MAX_LISTED_TEXTS` texts, and a line with the number of further texts."""
+    for text in texts[:MAX_LISTED_TEXTS]:
         yield label, text
-    if len(texts) > MAX_ROWS:
-        yield label, Text(f"and {len(texts) - MAX_ROWS} more", style="dim")
+    if len(texts) > MAX_LISTED_TEXTS:
+        yield label, Text(f"and {len(texts) - MAX_LISTED_TEXTS} more", style="dim")
 
 
 def _content_lines(content: model.Content) -> Iterator[Line]:
@@ -138,13 +138,13 @@ def _sheet_text(sheet: model.Sheet) -> Text:
     read = [c for c in sheet.columns if c.read_as]
     if not read:
         names = [c.name for c in sheet.columns]
-        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {name_list(names, MAX_ROWS)}")
+        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {name_list(names, MAX_LISTED_TEXTS)}")
     per_actor = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
     whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
     text = Text(f"{whole} read: {', '.join(_column_text(column, per_actor=per_actor) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
         names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
-        text.append(f"; not read: {name_list(names, MAX_ROWS)}", style="dim")
+        text.append(f"; not read: {name_list(names, MAX_LISTED_TEXTS)}", style="dim")
     return text
 
 

@@ -31,7 +31,7 @@ _BAG_INFO_PATTERN: Final = re.compile(
     rf"(?:External-Description: {re.escape(DESCRIPTION)})?"
     r"(?:Bagging-Date: (\d{4}-\d\d-\d\d)\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
 )
-_REFUSED_CHARACTER: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
+_REFUSED_FILE_NAME_CHARACTER: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 """A path with such a character cannot be packed."""
 
 
@@ -92,7 +92,7 @@ def _write_manifest(folder: Path, manifest_name: str, files: Iterable[Path]) -> 
     lines = []
     for path in files:
         inner = path.relative_to(folder).as_posix()
-        if _REFUSED_CHARACTER.search(inner):
+        if _REFUSED_FILE_NAME_CHARACTER.search(inner):
             raise UsageError(f"{inner}: sha256sum does not find a file of such a name: rename it")
         lines.append(f"{sha256_of(path)}  {inner}\n")
     (folder / manifest_name).write_text("".join(lines), "utf-8", newline="\n")

@@ -141,12 +141,12 @@ def differing_evidence_keys(
     told = {**evidence, "findings": [{key: row.get(key) for key in said} for row in evidence["findings"]]}
     due["rule versions"] = [rule["rule_version"] for rule in rules]
     told["rule versions"] = [rule["rule_version"] for rule in facts["rules"]]
-    due["sql"] = [_due_sql_path(row, has_drive_folder="key" in said) for row in evidence["findings"]]
+    due["sql"] = [_expected_sql_path(row, has_drive_folder="key" in said) for row in evidence["findings"]]
     told["sql"] = [row["sql"] for row in evidence["findings"]]
     return [key for key, value in due.items() if told.get(key) != value]
 
 
-def _due_sql_path(finding: dict[str, Any], *, has_drive_folder: bool) -> str | None:
+def _expected_sql_path(finding: dict[str, Any], *, has_drive_folder: bool) -> str | None:
     """Return the path where the SQL of a finding must be; None: the pack has a reason instead of the SQL."""
     said = finding["without_sql_because"]
     place = f"{FINDINGS_FOLDER}/{finding['key']}" if has_drive_folder else FINDINGS_FOLDER
@@ -260,7 +260,7 @@ def check_sql_in_folders(
         tables = finding_sql.tables_of_condition(rule)
         try:
             rows = {table: pq.read_table(place / f"{table}.parquet") for table in tables}
-            same = finding_sql.finding_sql_text(rule, row, sql, tables) == text and finding_rows.has_finding_numbers(
+            same = finding_sql.finding_sql_text(rule, row, sql, tables) == text and finding_rows.gives_finding_numbers(
                 sql, row, rows
             )
         except READ_ERRORS:

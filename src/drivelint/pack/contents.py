@@ -39,8 +39,8 @@ COPIED_RESULT_FILES: Final = frozenset(name for name in RESULT_FILE_GLOBS if not
 }
 """The files of a result that are copied into a pack. The manifest is left out, because the bag has its own."""
 FINDING_ENTRY_COLUMNS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
-_DRIVE_COLUMNS: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
-_LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
+_DRIVE_COLUMNS_IN_EVIDENCE: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
+_LIBRARIES_WITH_STATED_VERSION: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
 """Libraries that affect verdicts or the bytes of files."""
 
 
@@ -55,7 +55,7 @@ def evidence_values_of_result(folder: Path, result: Result, check_request: RunRe
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
         "tool": packed_summary(folder)["tool"],
-        "drives": [{key: drive[key] for key in _DRIVE_COLUMNS} for drive in judged_drives(drives)],
+        "drives": [{key: drive[key] for key in _DRIVE_COLUMNS_IN_EVIDENCE} for drive in judged_drives(drives)],
         "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
         "options": _options_of_check(check_request, result),
         **evidence_values_of_rules(folder, rules),
@@ -98,7 +98,7 @@ def library_versions() -> dict[str, str]:
     return {
         "drivelint": __version__,
         "python": platform.python_version(),
-        **{name: version(name) for name in _LIBRARIES},
+        **{name: version(name) for name in _LIBRARIES_WITH_STATED_VERSION},
     }
 
 
@@ -110,7 +110,7 @@ def path_inside_pack(folder: Path, path: str) -> Path:
     return found
 
 
-def findings_with_sql_text(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
+def phrase_on_findings_with_sql(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
     """Return in words how many findings of a check have SQL, one per event, as its reports count them.
 
     `rows`: the table `finding`; `entries`: the entries of `findings`.

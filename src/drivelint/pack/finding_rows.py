@@ -9,7 +9,7 @@ import duckdb
 import pyarrow.parquet as pq
 
 from drivelint.pack import finding_sql
-from drivelint.pack.finding_sql import COMPARED_COLUMNS
+from drivelint.pack.finding_sql import COMPARED_FINDING_COLUMNS
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.pack.finding_sql import Row
 
-PADDING_NS: Final = 10_000_000_000
+TIME_AROUND_FINDING_NS: Final = 10_000_000_000
 """Time before and after a finding whose rows are tried before the whole drive is taken."""
 _TIME_COLUMN_PAIRS: Final = (
     ("t_ns", "t_ns"),
@@ -56,7 +56,7 @@ def reproducing_files_or_reason(
     `tables`: name of a table that the rule's condition reads -> all its rows about the ego.
     """
     sql = finding_sql.select_of_finding(rule, params, finding, ref_id)
-    if not finding_sql.is_split_alike_by_shell(sql):
+    if not finding_sql.is_split_by_shell_as_by_parser(sql):
         return "DuckDB's shell would read it otherwise: the rule has a comment in /* */, or a text in E'' or $$"
     with duckdb.connect(config={"threads": "1"}) as con:
         store.lock_down(con)  # the rule, or the pack that is verified, may be untrusted
@@ -71,14 +71,14 @@ def reproducing_files_or_reason(
     return {SQL_FILE: finding_sql.finding_sql_text(rule, finding, sql, least_rows).encode(), **files}
 
 
-def has_finding_numbers(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
+def gives_finding_numbers(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
     """Return whether a DuckDB without drivelint's tables computes the numbers of a finding from these rows."""
     with duckdb.connect(config={"threads": "1"}) as con:
         try:
             con.execute(";".join(finding_sql.called_macro_definitions(sql)))
             for table, rows in tables.items():
                 con.register(table, rows)
-            return _has_rows_finding_numbers(con.execute(sql).to_arrow_table().to_pylist(), finding)
+            return _are_finding_numbers_in_rows(con.execute(sql).to_arrow_table().to_pylist(), finding)
         except duckdb.Error:
             return False
 
@@ -92,7 +92,7 @@ def _fewest_sufficient_rows(
     def are_sufficient(rows_by_table: Mapping[str, pa.Table]) -> bool:
         for table, rows in rows_by_table.items():
             con.register(table, rows)
-        return _has_rows_finding_numbers(con.execute(sql).to_arrow_table().to_pylist(), finding)
+        return _are_finding_numbers_in_rows(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
     least = {table: each[0] for table, each in choices.items()}
     if are_sufficient(least):
@@ -110,11 +110,11 @@ def _first_sufficient(choices: Sequence[pa.Table], is_sufficient: Callable[[pa.T
     return next((rows for rows in choices[:-1] if is_sufficient(rows)), choices[-1])
 
 
-def _has_rows_finding_numbers(rows: list[dict[str, Any]], finding: Row) -> bool:
+def _are_finding_numbers_in_rows(rows: list[dict[str, Any]], finding: Row) -> bool:
     return (
         len(rows) == 1
         and rows[0]["holds"] is False
-        and all(rows[0][name] == finding[name] for name in COMPARED_COLUMNS)
+        and all(rows[0][name] == finding[name] for name in COMPARED_FINDING_COLUMNS)
     )
 
 
@@ -125,7 +125,7 @@ def _row_choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -
         _time_condition_sql(columns, *times)
         for times in (
             (finding["t_worst_ns"], finding["t_worst_ns"]),
-            (finding["t_start_ns"] - PADDING_NS, finding["t_end_ns"] + PADDING_NS),
+            (finding["t_start_ns"] - TIME_AROUND_FINDING_NS, finding["t_end_ns"] + TIME_AROUND_FINDING_NS),
         )
     )
     parties = ", ".join(

@@ -25,7 +25,7 @@ _CALL_PATTERN: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
 _MACRO_PATTERN: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT_PATTERN: Final = re.compile(r"--.*")
 _SPATIAL_CALL_PATTERN: Final = re.compile(r"\bST_\w+\s*\(")
-COMPARED_COLUMNS: Final = ("observed", "required", "margin")
+COMPARED_FINDING_COLUMNS: Final = ("observed", "required", "margin")
 """The columns that the SQL of a finding must reproduce."""
 
 
@@ -73,7 +73,7 @@ def text_literal(text: str) -> str:
     return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
 
 
-def is_split_alike_by_shell(sql: str) -> bool:
+def is_split_by_shell_as_by_parser(sql: str) -> bool:
     """Return whether DuckDB's shell ends a statement where its parser does. If not, the shell would run text as an unchecked statement."""
     content = sql.encode()
     kinds = (content[at : at + 1] for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.string_const)
@@ -109,7 +109,7 @@ def finding_sql_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) 
     """Return the text of `finding.sql`. Run in its folder, it prints the finding's numbers."""
     called = called_macro_definitions(sql)
     spatial = any(_SPATIAL_CALL_PATTERN.search(text) for text in (sql, *called))
-    numbers = ", ".join(f"{name} {_number_literal(finding[name])}" for name in COMPARED_COLUMNS)
+    numbers = ", ".join(f"{name} {_number_literal(finding[name])}" for name in COMPARED_FINDING_COLUMNS)
     lines = [
         f"-- Finding {finding['finding_id']} of the rule {rule.id}: {terminal_safe_line(rule.title)}",
         f"-- {terminal_safe_line(rule.clause)}",

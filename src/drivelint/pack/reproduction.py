@@ -172,7 +172,7 @@ def _evidence_of_rule(
     }
 
 
-def file_differences(
+def file_problems_and_whether_bytes_differ(
     folder: Path, files: Mapping[str, bytes], packed: Mapping[str, bytes], *, other_libraries: bool
 ) -> tuple[list[Problem], bool]:
     """Return the files that differ from those in the pack, and whether any has other bytes.

@@ -37,7 +37,7 @@ _OUTCOME_TEXTS: Final = {
     "FAILED": "the drives broke rules",
 }
 
-_KINDS_IN_UNCHANGED_PACKS: Final = {"not signed", "nobody identified", "older pack"}
+_PROBLEM_KINDS_OF_UNCHANGED_PACKS: Final = {"not signed", "nobody identified", "older pack"}
 """Kinds of problems that unchanged packs can have."""
 
 
@@ -60,9 +60,9 @@ def verify(request: VerifyRequest) -> Verification:
     elif not wrong:
         wrong, stated = consistency.problems_and_content(request.folder)
         if stated is not None and not wrong:
-            judging, wrong, notes = _judging_problems_and_notes(request, stated)
+            judging, wrong, notes = _judging_phrase_problems_and_notes(request, stated)
             outcome = stated.outcome
-    elif any(problem.kind not in _KINDS_IN_UNCHANGED_PACKS for problem in wrong):
+    elif any(problem.kind not in _PROBLEM_KINDS_OF_UNCHANGED_PACKS for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
     # anyone can hash a changed pack again: only a known signature shows that it is unchanged
@@ -143,7 +143,9 @@ def _envelope_problems_and_signer(
     return wrong, f"signed by the key that was given ({wanted})"
 
 
-def _judging_problems_and_notes(request: VerifyRequest, stated: PackContent) -> tuple[str, list[Problem], list[str]]:
+def _judging_phrase_problems_and_notes(
+    request: VerifyRequest, stated: PackContent
+) -> tuple[str, list[Problem], list[str]]:
     """Judge the drives again if their logs are available. Return the result as a phrase, the problems, and notes on what was not
     examined."""
     result, evidence = stated.result, stated.evidence
@@ -238,7 +240,9 @@ def _judge_result_again(folder: Path, stated: PackContent, check_request: RunReq
         f"{RESULT_FOLDER}/{name}.parquet": parquet_bytes(_table_of_judged_drives(result, name), table)
         for name, table in ({} if whole else TABLE_OF_FILE).items()
     }
-    wrong, other_bytes = reproduction.file_differences(folder, files, packed, other_libraries=other_libraries)
+    wrong, other_bytes = reproduction.file_problems_and_whether_bytes_differ(
+        folder, files, packed, other_libraries=other_libraries
+    )
     extra = {
         path.relative_to(folder).as_posix() for path in (folder / "data" / "findings").rglob("*") if path.is_file()
     }

@@ -52,7 +52,7 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
     is_audit = audits.is_audit_folder(request.folder)
     if not is_audit and request.findings != DEFAULT_PACKED_FINDINGS:
         raise UsageError("--findings is of an audit: the pack of a check has all of its findings")
-    content = audits.functions_for_audit(request) if is_audit else _functions_for_check_result(request)
+    content = audits.functions_that_pack_audit(request) if is_audit else _functions_that_pack_check_result(request)
     try:
         request.out.parent.mkdir(parents=True, exist_ok=True)
         work = Path(mkdtemp(prefix=".drivelint.", dir=request.out.parent))
@@ -107,7 +107,7 @@ def _refuse_occupied_folder(out: Path, *, overwrite: bool) -> None:
         raise UsageError(f"{out}: has a pack: choose another folder, or replace it with drivelint pack --overwrite")
 
 
-def _functions_for_check_result(request: PackRequest) -> PackContentFunctions:
+def _functions_that_pack_check_result(request: PackRequest) -> PackContentFunctions:
     """Return the functions that pack the result of a check. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     check_request = run_request.load(request.folder)
@@ -124,12 +124,14 @@ def _functions_for_check_result(request: PackRequest) -> PackContentFunctions:
         result, check_request, rules, evidence, sheets.sheets_of_result(request.folder, result, check_request)
     )
     return PackContentFunctions(
-        lambda work: _write_payload(work, request, checked_result),
+        lambda work: _write_payload_and_return_evidence(work, request, checked_result),
         lambda work, told: in_toto_statement(work, result, packed_summary(work), told),
     )
 
 
-def _write_payload(pack_folder: Path, request: PackRequest, checked_result: _PackSource) -> dict[str, Any]:
+def _write_payload_and_return_evidence(
+    pack_folder: Path, request: PackRequest, checked_result: _PackSource
+) -> dict[str, Any]:
     result, check_request, rules, evidence, incidents = checked_result
     copied = [
         request.folder / name for name in sorted(contents.COPIED_RESULT_FILES) if (request.folder / name).is_file()

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import FrameTimes
     from drivelint.pictures.frames import FramePlace, FrameSource
 
-SEARCH_RADIUS_NS: Final = 2_000_000_000
+FRAME_SEARCH_RADIUS_NS: Final = 2_000_000_000
 """Frames are searched up to this far from a time in the log: a frame may be recorded up to a second after it was taken."""
-MOST_TIME_DIFFERENCE_NS: Final = 500_000_000
+LONGEST_TIME_TO_FRAME_NS: Final = 500_000_000
 """The greatest difference between the requested time and the time of a frame."""
 _SAME_CLOCK_TOLERANCE_NS: Final = 1_000_000_000
 """A camera's stamp counts as a time of the drive's clock if it differs from the converted log time by at most this."""
@@ -50,7 +50,7 @@ def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) ->
     """
     ahead_ns = clock.ahead_of_log_ns(t_ns)
     wanted_ns = t_ns - ahead_ns
-    places = log.frame_places(topic, wanted_ns - SEARCH_RADIUS_NS, wanted_ns + SEARCH_RADIUS_NS)
+    places = log.frame_places(topic, wanted_ns - FRAME_SEARCH_RADIUS_NS, wanted_ns + FRAME_SEARCH_RADIUS_NS)
     if not places:
         return None
     times_by_index: dict[int, int] = {}
@@ -66,7 +66,7 @@ def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) ->
     for way in (-1, 1):
         while 0 <= best + way < len(places) and time_difference_ns(best + way) < time_difference_ns(best):
             best += way
-    return (places[best], times_by_index[best]) if time_difference_ns(best) <= MOST_TIME_DIFFERENCE_NS else None
+    return (places[best], times_by_index[best]) if time_difference_ns(best) <= LONGEST_TIME_TO_FRAME_NS else None
 
 
 def _frame_time_ns(log: FrameSource, place: FramePlace, clock: DriveClock, ahead_of_log_ns: int) -> int:

@@ -106,7 +106,15 @@ _KIND_OF_CAMERA_MESSAGE: Final = {
     ("json", "foxglove.RawImage"): "raw",
 }
 """Encoding and schema of a camera message -> the kind of its content, which decides how it is read."""
-_WORDS_OF_OTHER_IMAGES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
+_TOPIC_WORDS_OF_NON_CAMERA_IMAGES: Final = (
+    "depth",
+    "disparity",
+    "segmentation",
+    "instance",
+    "optical_flow",
+    "mask",
+    "dvs",
+)
 """Words in the topics of images that are not camera pictures."""
 _WORDS_OF_SIDE_VIEWS: Final = ("left", "right", "rear", "back", "side")
 
@@ -119,7 +127,7 @@ def is_camera(channel: Channel, schema: Schema) -> bool:
 def has_pictures(topic: str, schema: str, encoding: str) -> bool:
     """Return whether the messages of a topic are frames of a camera. `schema`: name of their schema; `encoding`: their encoding."""
     is_known = (encoding, short_type_name(schema)) in _KIND_OF_CAMERA_MESSAGE
-    return is_known and not any(word in topic.lower() for word in _WORDS_OF_OTHER_IMAGES)
+    return is_known and not any(word in topic.lower() for word in _TOPIC_WORDS_OF_NON_CAMERA_IMAGES)
 
 
 def camera_sort_key(topic: str) -> tuple[int, str]:

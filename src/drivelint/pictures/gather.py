@@ -84,7 +84,7 @@ class PictureTaker:
             drive = self._drives[drive_id]
             try:
                 with drive.open_log() as log:
-                    jpeg_of = _cached_jpegs(log)
+                    jpeg_of = _cached_jpeg_function(log)
                     for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
                         asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
                         rows += _picture_rows(log, drive, asked, jpeg_of, troubles)
@@ -120,7 +120,7 @@ def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
     return None
 
 
-def _cached_jpegs(log: FrameSource) -> Callable[[str, FramePlace], Jpeg]:
+def _cached_jpeg_function(log: FrameSource) -> Callable[[str, FramePlace], Jpeg]:
     """Return a function that makes a small JPEG of a camera's frame; moments that are near each other share frames."""
     from drivelint.pictures.images import small_jpeg
 

@@ -13,15 +13,15 @@ from drivelint.pictures.frames import EncodedImage, FrameError, RawImage
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-MOST_WIDTH_HEIGHT_PX: Final = (640, 480)
+LARGEST_WIDTH_AND_HEIGHT_PX: Final = (640, 480)
 """The greatest width and height of a picture."""
 LOWER_QUALITY_ABOVE_BYTES: Final = 30_000
 """A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
 _QUALITY, _LOW_QUALITY, _LEAST_QUALITY = 70, 35, 10
-_BAND_ROWS: Final = 16
+_ROWS_PER_BAND: Final = 16
 """The rows of a band: a JPEG has blocks of 16 rows where its colours have half the resolution."""
-_BANDS_PER_SAMPLE: Final = 6
-_FORMATS: Final = ("JPEG", "PNG", "WEBP")
+_BANDS_PER_SAMPLED_BAND: Final = 6
+_ACCEPTED_IMAGE_FORMATS: Final = ("JPEG", "PNG", "WEBP")
 _MOST_PIXELS: Final = 100_000_000
 _PILLOW_MODES: Final = {
     "rgb8": ("RGB", "RGB", 3), "bgr8": ("RGB", "BGR", 3), "8UC3": ("RGB", "BGR", 3), "rgba8": ("RGB", "RGBX", 4),
@@ -52,32 +52,32 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
         small = whole.reduce(times) if (times := _shrink_factor(whole)) > 1 else whole
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
-    quality = _quality_for(_estimated_bytes(small))
+    quality = _jpeg_quality_for_size(_estimated_jpeg_size_bytes(small))
     data = _jpeg_bytes(small, quality)
     if len(data) > LOWER_QUALITY_ABOVE_BYTES and quality == _QUALITY:  # the estimate was too low
-        data = _jpeg_bytes(small, _quality_for(len(data)))
+        data = _jpeg_bytes(small, _jpeg_quality_for_size(len(data)))
     return Jpeg(data, *small.size)
 
 
-def _quality_for(bytes_at_full_quality: float) -> int:
+def _jpeg_quality_for_size(bytes_at_full_quality: float) -> int:
     """Return the quality for an image whose JPEG of full quality has this many bytes."""
     if bytes_at_full_quality <= LOWER_QUALITY_ABOVE_BYTES:
         return _QUALITY
     return _LOW_QUALITY if bytes_at_full_quality < 2 * LOWER_QUALITY_ABOVE_BYTES else _LEAST_QUALITY
 
 
-def _estimated_bytes(image: Image.Image) -> float:
+def _estimated_jpeg_size_bytes(image: Image.Image) -> float:
     """Return about how many bytes a JPEG of full quality has, from every sixth band of 16 rows: a sixth of the work of encoding it.
 
     An image of less than twelve bands is small at every quality: zero.
     """
-    bands = image.height // _BAND_ROWS
-    if bands < 2 * _BANDS_PER_SAMPLE:
+    bands = image.height // _ROWS_PER_BAND
+    if bands < 2 * _BANDS_PER_SAMPLED_BAND:
         return 0.0
-    rows = np.asarray(image)[: bands * _BAND_ROWS].reshape(bands, _BAND_ROWS, image.width, 3)
-    sample = rows[_BANDS_PER_SAMPLE // 2 :: _BANDS_PER_SAMPLE]
+    rows = np.asarray(image)[: bands * _ROWS_PER_BAND].reshape(bands, _ROWS_PER_BAND, image.width, 3)
+    sample = rows[_BANDS_PER_SAMPLED_BAND // 2 :: _BANDS_PER_SAMPLED_BAND]
     data = _jpeg_bytes(Image.fromarray(sample.reshape(-1, image.width, 3)), _QUALITY)
-    return len(data) * image.height / (len(sample) * _BAND_ROWS)
+    return len(data) * image.height / (len(sample) * _ROWS_PER_BAND)
 
 
 def _jpeg_bytes(image: Image.Image, quality: int) -> bytes:
@@ -94,12 +94,12 @@ def _pillow_image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
 
 def _shrink_factor(image: Image.Image) -> int:
     """Return the whole number by which the sides of an image are divided."""
-    return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_WIDTH_HEIGHT_PX, strict=True)))
+    return max(1, *(-(-side // most) for side, most in zip(image.size, LARGEST_WIDTH_AND_HEIGHT_PX, strict=True)))
 
 
 def _open_image(image: EncodedImage) -> Image.Image:
     try:
-        picture = Image.open(io.BytesIO(image.data), formats=_FORMATS)
+        picture = Image.open(io.BytesIO(image.data), formats=_ACCEPTED_IMAGE_FORMATS)
         if picture.width * picture.height > _MOST_PIXELS:
             raise FrameError(f"an image of {picture.width} x {picture.height} pixels")
         times = _shrink_factor(picture)

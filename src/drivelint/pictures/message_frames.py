@@ -33,10 +33,10 @@ class MessageFrameSource(ABC):
 
     def stamp_ns(self, place: FramePlace) -> int | None:
         """Return when the frame at a place was taken, by its message; None: the message has no time."""
-        return self._cached_stamp_ns(place)
+        return self._cached_stamp_function(place)
 
     @cached_property
-    def _cached_stamp_ns(self) -> Callable[[FramePlace], int | None]:
+    def _cached_stamp_function(self) -> Callable[[FramePlace], int | None]:
         return lru_cache(maxsize=_MOST_CACHED_STAMPS)(lambda place: self.frame(place).stamp_ns)
 
     def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:

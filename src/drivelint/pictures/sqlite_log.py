@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Self
 
 from drivelint.errors import TraceError
-from drivelint.formats.sqlite_bag.database import convert_errors, open_database
+from drivelint.formats.sqlite_bag.database import convert_sqlite_errors, open_database
 from drivelint.formats.sqlite_bag.reader import SqliteFile
 from drivelint.pictures.frames import (
     FrameError,
@@ -84,7 +84,7 @@ class SqliteFrameSource(MessageFrameSource):
 
     def _query_rows(self, file: int, query: str, *values: str | int) -> list[tuple[int | bytes, ...]]:
         try:
-            with convert_errors(self._paths[file]):
+            with convert_sqlite_errors(self._paths[file]):
                 return self._open[file].execute(query, values).fetchall()
         except TraceError as error:
             raise FrameError(str(error)) from error

@@ -96,9 +96,9 @@ def sentence_if_it_has_advice(
     return _sentence(code, arguments, start_ns, rule_texts) if text_of(code, rule_texts).advice or any(nested) else None
 
 
-def codes_in(code: str, arguments: Mapping[str, Any]) -> set[str]:
+def code_and_nested_codes(code: str, arguments: Mapping[str, Any]) -> set[str]:
     """Return a code and the codes of the reasons among its arguments."""
-    return {code}.union(*(codes_in(*each) for each in _nested_reasons(arguments)))
+    return {code}.union(*(code_and_nested_codes(*each) for each in _nested_reasons(arguments)))
 
 
 def _nested_reasons(arguments: Mapping[str, Any]) -> list[Reason]:

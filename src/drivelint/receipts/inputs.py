@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     IsOutput = Callable[[str], bool]
     """Returns whether an absolute path without links is an output of the run."""
 
-ABSENT: Final = "absent"
+ABSENT_PATH_STATE: Final = "absent"
 
 
 def file_sha256(path: Path | str) -> str:
@@ -41,12 +41,12 @@ def path_state_if_known(path: str, is_output: IsOutput) -> str | None:
             return f"file {file_sha256(path)} {real}"
         return f"folder {_hash_of_listing(path, real, is_output)} {real}" if S_ISDIR(mode) else None
     except (FileNotFoundError, NotADirectoryError):
-        return ABSENT
+        return ABSENT_PATH_STATE
     except (OSError, ValueError):
         return None
 
 
-def hash_of_matches(pattern: str, is_output: IsOutput) -> str:
+def hash_of_matching_file_names(pattern: str, is_output: IsOutput) -> str:
     """Return the hash of the file names that a glob pattern matches."""
     found = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
     return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
@@ -61,7 +61,7 @@ class RunInputs:
 
     def are_unchanged(self, is_output: IsOutput) -> bool:
         """Return whether all inputs have the same state as before."""
-        names = all(hash_of_matches(pattern, is_output) == said for pattern, said in self.globs.items())
+        names = all(hash_of_matching_file_names(pattern, is_output) == said for pattern, said in self.globs.items())
         return names and all(path_state_if_known(path, is_output) == said for path, said in self.states.items())
 
 

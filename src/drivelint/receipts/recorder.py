@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.memo import cache_folder
 from drivelint.receipts.events import NOT_REPEATABLE_EVENT, SEARCHED_PATH_EVENT
-from drivelint.receipts.inputs import RunInputs, hash_of_matches, path_state_if_known
+from drivelint.receipts.inputs import RunInputs, hash_of_matching_file_names, path_state_if_known
 from drivelint.receipts.program import program_folders
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class InputRecorder:
         elif event == "tempfile.mkdtemp":
             self._made.add(os.path.realpath(args[0]))
         elif event == "glob.glob":
-            self._globs.setdefault(pattern := os.fspath(args[0]), hash_of_matches(pattern, self.is_output))
+            self._globs.setdefault(pattern := os.fspath(args[0]), hash_of_matching_file_names(pattern, self.is_output))
         elif not is_by_importer and not isinstance(path := "." if args[0] is None else args[0], int):
             path = os.fsdecode(path)
             if event == "open" and _is_writing(*args[1:]):

@@ -27,7 +27,7 @@ MOST_BYTES_OF_ALL_RECEIPTS: Final = 1_000_000_000
 """Limit of the size of all receipts together in bytes."""
 MOST_BYTES_OF_ONE_RECEIPT: Final = 200_000_000
 """Limit of the output of one run in bytes. A larger run is judged again, because copying its output takes long, too."""
-_FORMAT: Final = "drivelint receipt 1"
+_RECEIPT_FORMAT: Final = "drivelint receipt 1"
 _HASH_BYTES: Final = 32
 _PIECE_BYTES: Final = 1 << 20
 
@@ -115,7 +115,7 @@ def _receipts_folder() -> Path | None:
 
 def _write_receipt(target: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
     """Write a receipt. Errors: `OSError`, also if a file does not have its stated size."""
-    head = {"format": _FORMAT, "key": key, **asdict(receipt)}
+    head = {"format": _RECEIPT_FORMAT, "key": key, **asdict(receipt)}
     target.write(json.dumps(head).encode() + b"\n")
     for file, size in zip(files, receipt.files.values(), strict=True):
         before = target.tell()
@@ -136,7 +136,7 @@ def _read_receipt(file: IO[bytes], key: str) -> OpenedReceipt | None:
     file.seek(0)
     try:
         stored_fields: dict[str, Any] = json.loads(file.readline())
-        if stored_fields.pop("format") != _FORMAT or stored_fields.pop("key") != key:
+        if stored_fields.pop("format") != _RECEIPT_FORMAT or stored_fields.pop("key") != key:
             return None
         return OpenedReceipt(_receipt_from_fields(stored_fields), file, file.tell())
     except (ValueError, KeyError, TypeError, RecursionError):

@@ -107,12 +107,12 @@ def render_markdown(rules: Iterable[Rule], folder: Path) -> str:
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = group_rows(rules, lambda rule: rule.pack)
     known = {pack: read_clauses(folder / pack) for pack in packs}
-    return text_template(__file__, "catalogue.md.j2", finalize=_inert_cell).render(
+    return text_template(__file__, "catalogue.md.j2", finalize=_table_cell_without_markup).render(
         rules=rules,
         packs=packs,
         clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
         applies=_restrictions_text,
-        asking=lambda asked, reads: _rules_using_text(rules, asked, reads),
+        asking=lambda asked, reads: _text_on_rules_that_use(rules, asked, reads),
         column_values={
             "actor_class": ACTOR_CLASSES,
             "indicator": INDICATORS,
@@ -128,7 +128,7 @@ def render_markdown(rules: Iterable[Rule], folder: Path) -> str:
     )
 
 
-def _inert_cell(value: Any) -> Any:
+def _table_cell_without_markup(value: Any) -> Any:
     """Return a value for a table cell, without links, pictures and HTML (except line breaks), because rules may be untrusted."""
     if not isinstance(value, str):
         return value
@@ -146,7 +146,7 @@ def _signal_codes_text(kind: str, name_part: str) -> str:
     return f"`signal` {codes}; or {name_part} in its name"
 
 
-def _rules_using_text(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
+def _text_on_rules_that_use(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
     """Return the ids of the rules that use one of `requirements`, or their number if there are many.
 
     A rule uses a requirement if it requires it, is restricted by it, or names it in its SQL. If `reads` is not empty, a name in the SQL

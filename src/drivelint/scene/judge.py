@@ -13,7 +13,7 @@ from drivelint import catalogue
 from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import DriveLintError, ExitCode, SceneFileError, TraceError, UsageError
 from drivelint.phrases import hint, nearest_word, plural
-from drivelint.reasons.reason_text import codes_in
+from drivelint.reasons.reason_text import code_and_nested_codes
 from drivelint.report.progress import Silent
 from drivelint.result.publishing import publish
 from drivelint.run import CheckOptions, check
@@ -83,7 +83,7 @@ def reason_codes(row: Row) -> set[str]:
     """Return the codes of the reason and of the cause in a row of verdicts."""
     codes = {row["reason_code"]} if row["reason_code"] else set()
     if row["cause_code"]:
-        codes |= set(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
+        codes |= set(code_and_nested_codes(row["cause_code"], json.loads(row["cause_args"] or "{}")))
     return codes
 
 

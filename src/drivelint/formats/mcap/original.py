@@ -89,7 +89,7 @@ class OriginalFile:
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
     @contextmanager
-    def convert_errors(self, record: Record) -> Iterator[None]:
+    def convert_sqlite_errors(self, record: Record) -> Iterator[None]:
         """Convert errors of the MCAP library about this record to `TraceError`."""
         try:
             yield
@@ -113,7 +113,7 @@ class OriginalFile:
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
-        with self.convert_errors(record):
+        with self.convert_sqlite_errors(record):
             stream, size = get_chunk_data_stream(Chunk.read(self.body_stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
         at = 0
@@ -176,7 +176,7 @@ class OriginalFile:
         channels: dict[int, Channel] = {}
         counts: Statistics | None = None
         for record in records:
-            with self.convert_errors(record):
+            with self.convert_sqlite_errors(record):
                 if record.opcode == Opcode.SCHEMA:
                     schema = Schema.read(self.body_stream(record))
                     schemas.setdefault(schema.id, schema)
@@ -193,7 +193,7 @@ class OriginalFile:
 
     def _read_schemas_and_channels_in_chunks(self, chunks: list[Record]) -> None:
         for chunk in chunks:
-            with self.convert_errors(chunk):
+            with self.convert_sqlite_errors(chunk):
                 for opcode, _, body in self.chunk_records(chunk):
                     if opcode == Opcode.SCHEMA:
                         schema = Schema.read(ReadDataStream(io.BytesIO(body)))

@@ -111,7 +111,7 @@ class PartCopy:
                 self._skip_record(record)
                 self._write_with_new_ids((opcode, body) for opcode, _, body in self._original.chunk_records(record))
             else:
-                with self._original.convert_errors(record):
+                with self._original.convert_sqlite_errors(record):
                     self._add_to_index(record)
                 self._copy_record(record)
         self._index_last_chunk()

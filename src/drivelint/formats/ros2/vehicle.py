@@ -30,9 +30,9 @@ AXLE_FRAME: Final = b"base_link"
 _HEIGHT_NAME: Final = "vehicle_height"
 _WHOLE, _DOUBLE = 2, 3
 """The values of `rcl_interfaces/ParameterType` for integers and doubles."""
-_LENGTH_TOLERANCE_M: Final = 0.001
+_SAME_LENGTH_TOLERANCE_M: Final = 0.001
 """Lengths that differ by less are equal: some are recorded in single precision."""
-_MOST_BOX_M: Final = 50.0
+_LARGEST_BOX_SIDE_M: Final = 50.0
 """A longer or wider box is implausible."""
 
 
@@ -74,7 +74,7 @@ def vehicle_box(
     if not boxes:
         return None, []
     measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
-    if (np.ptp(measures, axis=0) > _LENGTH_TOLERANCE_M).any():
+    if (np.ptp(measures, axis=0) > _SAME_LENGTH_TOLERANCE_M).any():
         message = f"{name_list([box.source for box in boxes])} give the ego different sizes, and none is used: set it with --ego-size"
         return None, [QualityFinding("ego_size", "warning", message, len(boxes))]
     return boxes[0], []
@@ -118,7 +118,7 @@ def _box_of_lengths(source: str, lengths: Mapping[str, float]) -> VehicleBox | N
         return None
     base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTH_NAMES)
     length, width = front + base + rear, left + tread + right
-    if not (0.0 < length < _MOST_BOX_M and 0.0 < width < _MOST_BOX_M and min(base, tread) > 0.0):
+    if not (0.0 < length < _LARGEST_BOX_SIDE_M and 0.0 < width < _LARGEST_BOX_SIDE_M and min(base, tread) > 0.0):
         return None
     height = lengths.get(_HEIGHT_NAME, nan)
     height = height if isfinite(height) and height > 0.0 else nan

@@ -28,18 +28,18 @@ LANE_KIND_BY_FEATURE_TYPE: Final = {
     "LANE_BIKE_LANE": "biking",
 }  # fmt: skip
 """Type of a feature -> lane type. LANE_UNKNOWN counts as a lane for driving."""
-_POINT_SPACING_M: Final = 4.0
+_CENTRE_LINE_POINT_SPACING_M: Final = 4.0
 _LONGEST_LANE_M: Final = 10_000.0
 _SIMPLIFICATION_TOLERANCE_M: Final = 0.02  # the tolerance with which a centre line is simplified
 _LANE_END_INSET_M: Final = (
     2.0  # an outline's ends may be oblique: at a lane's ends, the width is measured this far inside
 )
-_OUTLINE_REACH_M: Final = 10.0  # how far to the side a lane's polygon is looked for
-_BOUND_REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
+_OUTLINE_SEARCH_REACH_M: Final = 10.0  # how far to the side a lane's polygon is looked for
+_BOUND_SEARCH_REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
 _LEAST_BOUND_DISTANCE_M: Final = (
     0.8  # a line to which no lane refers, nearer to the centre line than this, bounds another lane
 )
-_LARGEST_SIDE_DIFFERENCE_M: Final = (
+_LARGEST_LEFT_RIGHT_BOUND_DIFFERENCE_M: Final = (
     0.6  # a bound farther away than the other bound by more than this lies beyond another strip
 )
 _PARALLEL_LANE_DISTANCES_M: Final = (2.2, 6.0)  # least and largest distance between the centre lines of parallel lanes
@@ -107,7 +107,7 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
             whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SIMPLIFICATION_TOLERANCE_M)))
         )
     )
-    pieces = np.maximum(1, np.ceil(np.diff(corners) / _POINT_SPACING_M)).astype(int)
+    pieces = np.maximum(1, np.ceil(np.diff(corners) / _CENTRE_LINE_POINT_SPACING_M)).astype(int)
     s = np.concatenate(
         [
             *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
@@ -177,7 +177,7 @@ def _measure_to_outline(lane: CentreLine, outline: shapely.Polygon) -> None:
     place = np.column_stack([np.interp(s, lane.s, column) for column in lane.line.T])
     inside = shapely.contains(outline, shapely.points(place))
     for side in (0, 1):
-        crossed = shapely.intersection(_rays_to_side(lane, side, _OUTLINE_REACH_M, place), outline.exterior)
+        crossed = shapely.intersection(_rays_to_side(lane, side, _OUTLINE_SEARCH_REACH_M, place), outline.exterior)
         lane.bound_distances[:, side] = np.where(inside, shapely.distance(shapely.points(place), crossed), np.nan)
 
 
@@ -207,7 +207,7 @@ def named_boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
 def _measure_to_nearest_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
     """Measure to the nearest line or edge beside each point, whichever lane it belongs to."""
     for side in (0, 1):
-        rays = _rays_to_side(lane, side, _BOUND_REACH_M, lane.line)
+        rays = _rays_to_side(lane, side, _BOUND_SEARCH_REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
             _reduce_distances_to_line(
                 lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_BOUND_DISTANCE_M
@@ -216,7 +216,7 @@ def _measure_to_nearest_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
 
 def _reduce_distances_to_line(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:
     """Set the distance to a line, at the points `at`, where it is over `least_m` and the smallest so far."""
-    crossed = shapely.intersection(_rays_to_side(lane, side, _BOUND_REACH_M, lane.line), line)
+    crossed = shapely.intersection(_rays_to_side(lane, side, _BOUND_SEARCH_REACH_M, lane.line), line)
     far = np.asarray(shapely.distance(shapely.points(lane.line), crossed), np.float64)
     lane.bound_distances[:, side] = np.where(
         at & (far > least_m), np.fmin(lane.bound_distances[:, side], far), lane.bound_distances[:, side]
@@ -250,7 +250,7 @@ def _measure_to_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[
                     lane.bound_distances[at, side] = np.fmin(lane.bound_distances[at, side], far / 2.0)
 
 
-def fill_unknown_bound_distances_with_shares(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
+def fill_unknown_bound_distances_and_return_filled_shares(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
     """Fill in unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances filled in.
 
     At its ends, a lane is as wide as its predecessors or successors; in between, the width changes linearly. A side that is still unknown
@@ -278,6 +278,6 @@ def fill_unknown_bound_distances_with_shares(lanes: Mapping[str, CentreLine]) ->
             "polygon" not in lane.feature
         ):  # a strip between a lane and a far edge, as for parked cars, is not part of the lane
             lane.bound_distances = np.minimum(
-                lane.bound_distances, lane.bound_distances[:, ::-1] + _LARGEST_SIDE_DIFFERENCE_M
+                lane.bound_distances, lane.bound_distances[:, ::-1] + _LARGEST_LEFT_RIGHT_BOUND_DIFFERENCE_M
             )
     return {name: share for name, share in unknown.items() if share > 0.0}

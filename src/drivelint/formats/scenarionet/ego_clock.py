@@ -15,11 +15,11 @@ import numpy as np
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
-_LEAST_SPEED_MPS: Final = 2.0
+_LEAST_MOVING_SPEED_MPS: Final = 2.0
 """Below this speed, the ego moves by less than 4 cm per message, so that noise of 2 cm hides a lost message."""
-_COMPARED_STEPS_PER_SIDE: Final = 4
+_MEDIAN_STEPS_PER_SIDE: Final = 4
 """A step is compared with this number of steps on each side."""
-_MESSAGE_COUNT_TOLERANCE: Final = 0.4
+_LOST_MESSAGE_COUNT_TOLERANCE: Final = 0.4
 """A step over lost messages is longer by a whole number of messages, give or take this share of a message."""
 _MOST_LOST_MESSAGES_PER_STEP: Final = 10
 """A step that would span more lost messages is not taken for one."""
@@ -49,14 +49,16 @@ def track_at_steps(place: Floats, heading: Floats, t_s: Floats, message_period_s
     """
     n, period = len(t_s), np.diff(t_s)
     way = np.hypot(*np.diff(place, axis=0).T)
-    if n < 2 * _COMPARED_STEPS_PER_SIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
+    if n < 2 * _MEDIAN_STEPS_PER_SIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
         return EgoTrack(place, heading, 0, np.nan)
     usual = _usual_speed(way / period)
-    moving = usual > _LEAST_SPEED_MPS
+    moving = usual > _LEAST_MOVING_SPEED_MPS
     longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_period_s
     whole = np.round(longer)
     n_lost = np.where(
-        (whole >= 1) & (whole <= _MOST_LOST_MESSAGES_PER_STEP) & (np.abs(longer - whole) < _MESSAGE_COUNT_TOLERANCE),
+        (whole >= 1)
+        & (whole <= _MOST_LOST_MESSAGES_PER_STEP)
+        & (np.abs(longer - whole) < _LOST_MESSAGE_COUNT_TOLERANCE),
         whole,
         0.0,
     )
@@ -78,9 +80,9 @@ def track_at_steps(place: Floats, heading: Floats, t_s: Floats, message_period_s
 
 def _usual_speed(speed: Floats) -> Floats:
     """Return for each speed the median of this speed and its neighbours."""
-    padded = np.pad(speed, _COMPARED_STEPS_PER_SIDE, mode="reflect")
+    padded = np.pad(speed, _MEDIAN_STEPS_PER_SIDE, mode="reflect")
     return np.asarray(
-        np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _COMPARED_STEPS_PER_SIDE + 1), axis=1),
+        np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _MEDIAN_STEPS_PER_SIDE + 1), axis=1),
         np.float64,
     )
 

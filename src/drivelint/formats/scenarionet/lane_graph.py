@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _LARGEST_END_GAP_M: Final = 0.3  # the largest gap between the end of a lane and the start of the next
 _LEAST_SUCCESSOR_COSINE: Final = float(np.cos(np.radians(45.0)))
 _DISTANCE_BEYOND_BOUND_M: Final = 0.4  # how far beyond a bound the lane beside is looked for
-_SAMPLE_SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_LEAST_PLACES_BESIDE: Final = 3  # the least number of these places with the same lane beside
+_SAMPLED_SHARES_OF_LANE_LENGTH: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+_LEAST_SAMPLES_IN_NEIGHBOUR: Final = 3  # the least number of these places with the same lane beside
 _LEAST_NEIGHBOUR_COSINE: Final = float(np.cos(np.radians(25.0)))
 _LEAST_LEVEL_DIFFERENCE_M: Final = 3.0
 
@@ -95,7 +95,7 @@ def _neighbour_id_and_against(
 ) -> tuple[str | None, bool | None]:
     """Return the lane that contains most of the places just beyond a bound, and whether it runs the other way."""
     sign, bound = (1.0, lane.bounds[0]) if side == "left" else (-1.0, lane.bounds[1])
-    at = _SAMPLE_SHARES * lane.s[-1]
+    at = _SAMPLED_SHARES_OF_LANE_LENGTH * lane.s[-1]
     x, y, nx, ny, z = (np.interp(at, lane.s, values) for values in (*bound.T, *lane.normal.T, lane.z))
     places = np.column_stack([x, y]) + sign * _DISTANCE_BEYOND_BOUND_M * np.column_stack([nx, ny])
     votes: dict[int, list[int]] = defaultdict(list)
@@ -114,7 +114,7 @@ def _neighbour_id_and_against(
         joined = not {*lane.successors}.isdisjoint(neighbour.successors) or not {*lane.predecessors}.isdisjoint(
             neighbour.predecessors
         )
-        if len(votes[i]) >= _LEAST_PLACES_BESIDE and not joined:
+        if len(votes[i]) >= _LEAST_SAMPLES_IN_NEIGHBOUR and not joined:
             return neighbour.lane_id, sum(votes[i]) < 0
     return None, None
 

@@ -9,7 +9,7 @@ import shapely
 
 from drivelint.errors import MapError
 from drivelint.formats.scenarionet.centre_lines import (
-    fill_unknown_bound_distances_with_shares,
+    fill_unknown_bound_distances_and_return_filled_shares,
     measure_bound_distances,
     named_boundary_spans,
     read_centre_lines,
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from drivelint.formats.scenarionet.scenario import Scenario
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_MARKINGS: Final = {
+_MARKING_BY_LINE_TYPE: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
 """The part of a type between ROAD_LINE_ and the colour -> marking. Missing: double lines that may be crossed from one side only."""
-_LEAST_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
+_LEAST_JUNCTION_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
 _LEAST_CROSSING_ANGLE_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
 _MPS_PER_MPH: Final = 0.44704
 _MPS_PER_KMH: Final = 1.0 / 3.6
@@ -52,7 +52,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         measure_bound_distances(centres, scenario)
     except PickleError as error:
         raise MapError(f"map {source.name}: {error}") from error
-    assumed_shares = fill_unknown_bound_distances_with_shares(centres)
+    assumed_shares = fill_unknown_bound_distances_and_return_filled_shares(centres)
     lanes = build_lanes(_bounded_lanes(centres, scenario, quality), request.offset, quality)
     if not any(lane.drivable for lane in lanes):
         first = next((row["message"] for row in quality.rows), "it has none")
@@ -61,7 +61,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     for lane in lanes:
         centre = centres[lane.lanelet_id]
         lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
-    mark_junctions(lanes, least_share=_LEAST_OVERLAP_SHARE, least_angle_rad=_LEAST_CROSSING_ANGLE_RAD)
+    mark_junctions(lanes, least_share=_LEAST_JUNCTION_OVERLAP_SHARE, least_angle_rad=_LEAST_CROSSING_ANGLE_RAD)
     said = scenario.dataset.side_driven_on(scenario.place_name)
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
     beside = furniture_rows(scenario, lanes, request.offset, quality)
@@ -113,7 +113,8 @@ def _markings_of_sides(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]
         if end > begin:
             word = str(scenario.features.get(name, {}).get("type"))
             marking = next(
-                (marking for part, marking in _MARKINGS.items() if word.startswith(f"ROAD_LINE_{part}_")), None
+                (marking for part, marking in _MARKING_BY_LINE_TYPE.items() if word.startswith(f"ROAD_LINE_{part}_")),
+                None,
             )
             marks.append(Mark(("left", "right")[side], begin, end, marking))
     known = {mark.side for mark in marks}

@@ -57,7 +57,7 @@ def _point_layout(first_offset: int, size: int, n_numbers: int) -> np.dtype[Any]
     )
 
 
-_POINT_LISTS: Final = (
+_POINT_LIST_PATTERNS_AND_LAYOUTS: Final = (
     # MEMOIZE, MARK, then BINFLOAT thrice, TUPLE3 and MEMOIZE for each point, APPENDS
     (re.compile(rb"\x94\((?:G.{8}G.{8}G.{8}\x87\x94)+e", re.DOTALL), _point_layout(1, 29, 3), True),
     # MEMOIZE, MARK, then EMPTY_LIST, MEMOIZE, MARK, BINFLOAT twice and APPENDS for each point, APPENDS
@@ -71,7 +71,7 @@ def points_at(content: bytes, at: int, memo_number: int) -> tuple[Points, int] |
 
     `memo_number`: the memo number of the list.
     """
-    for pattern, point, are_tuples in _POINT_LISTS:
+    for pattern, point, are_tuples in _POINT_LIST_PATTERNS_AND_LAYOUTS:
         if match := pattern.match(content, at):
             n = (match.end() - at - _LIST_HEAD_BYTES - 1) // point.itemsize
             return Points(content, at + _LIST_HEAD_BYTES, n, point, are_tuples, memo_number + 1), match.end()
@@ -87,7 +87,7 @@ _ARRAY_PATTERN: Final = re.compile(
     re.DOTALL,
 )  # fmt: skip
 _ARRAY_END: Final = b"\x94t\x94b"  # after the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
-_ARRAY_MEMO_NUMBERS: Final = 6
+_N_MEMO_NUMBERS_PER_ARRAY: Final = 6
 """The number of parts of an array with a memo number. The file refers only to the third, the array, and the fifth, its bytes."""
 
 
@@ -111,7 +111,7 @@ def array_at(
     raw = content[begin:end]
     array = array_from_state((1, _integers_of_operations(shape), number_type, order == b"\x88", raw))
     memo[next_memo_number + 2], memo[next_memo_number + 4] = array, raw
-    return array, end + len(_ARRAY_END), next_memo_number + _ARRAY_MEMO_NUMBERS
+    return array, end + len(_ARRAY_END), next_memo_number + _N_MEMO_NUMBERS_PER_ARRAY
 
 
 def _integers_of_operations(operations: bytes) -> tuple[int, ...]:

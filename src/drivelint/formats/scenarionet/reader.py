@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
 takes_mapping: Final = False
 _PICKLE_PROTOCOLS: Final = (2, 3, 4, 5)
-_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in SIGNAL_STATE_BY_WORD.items()}
+_CODE_BY_LIGHT_WORD: Final = {word: SIGNAL_STATES.index(state) for word, state in SIGNAL_STATE_BY_WORD.items()}
 
 
 def accepts(probe: Probe) -> bool:
@@ -54,12 +54,12 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     tracks = read_tracks(scenario, t_s)
     findings = [
         *sources.correct_swapped_length_and_width(tracks, dataset),
-        *sources.drop_differenced_velocities(tracks),
+        *sources.drop_velocities_from_position_differences(tracks),
         *sources.drop_false_zero_last_velocities(tracks),
     ]
     is_interpolated = sources.actors_with_interpolated_positions(tracks, dataset)
     if is_interpolated.any():
-        findings += sources.give_keyframe_velocities(tracks, is_interpolated, dataset.steps_per_keyframe)
+        findings += sources.set_velocities_from_keyframes(tracks, is_interpolated, dataset.steps_per_keyframe)
     of_ego, notes = _correct_ego_track(tracks, scenario, is_interpolated)
     if not dataset.sizes:
         tracks.size[:] = np.nan
@@ -151,7 +151,7 @@ def _nanoseconds(t_s: Floats) -> Times:
 
 def _signal_states_and_findings(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return the states of all lights, one row per light and step, and findings. A light has the id of its lane."""
-    scenario.refuse_if_over_file_size(len(scenario.lights) * len(t_s), "states of lights")
+    scenario.refuse_if_more_values_than_file_bytes(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
     known_words: set[Any] = set()
     for name, light in scenario.lights.items():
@@ -162,9 +162,11 @@ def _signal_states_and_findings(scenario: Scenario, t_s: Floats) -> tuple[pa.Tab
             where = f"dynamic_map_states[{name[:100]!r}]['state']['object_state']"
             raise PickleError(f"{where} has not one word per step ({len(t_s)}): write the scenario again")
         ids.append(name)
-        codes.append(np.array([_LIGHT_CODES.get(word, -1) for word in words], np.int8))
+        codes.append(np.array([_CODE_BY_LIGHT_WORD.get(word, -1) for word in words], np.int8))
         known_words.update(words)
-    unread = {word[:100] for word in known_words - _LIGHT_CODES.keys() - {None} if word and "UNKNOWN" not in word}
+    unread = {
+        word[:100] for word in known_words - _CODE_BY_LIGHT_WORD.keys() - {None} if word and "UNKNOWN" not in word
+    }
     if not ids:
         return None, []
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))

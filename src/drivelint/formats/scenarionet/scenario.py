@@ -71,7 +71,7 @@ class Scenario(NamedTuple):
         """The name of the place, such as singapore-onenorth; empty: not known."""
         return str(self.metadata.get("map", ""))
 
-    def refuse_if_over_file_size(self, n: int, kind: str) -> None:
+    def refuse_if_more_values_than_file_bytes(self, n: int, kind: str) -> None:
         """Raise `PickleError` if there are more than `file_size` values: many references to one value could exceed any limit of memory."""
         if n > self.file_size:
             raise PickleError(f"its {n} {kind} are more than the file can hold: write the scenario again")
@@ -86,7 +86,9 @@ def read_scenario(content: bytes) -> Scenario:
     facts = _FACTS["dataset"].get(str(parts["metadata"].get("dataset", "")).lower(), {})
     named = [_dicts_in_part(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
     scenario = Scenario(len(content), DatasetFacts(**facts), parts["metadata"], *named)
-    scenario.refuse_if_over_file_size(sum(map(_n_points, scenario.features.values())), "points of map features")
+    scenario.refuse_if_more_values_than_file_bytes(
+        sum(map(_n_points, scenario.features.values())), "points of map features"
+    )
     return scenario
 
 

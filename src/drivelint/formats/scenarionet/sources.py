@@ -20,22 +20,22 @@ if TYPE_CHECKING:
     from drivelint.formats.scenarionet.tracks import Tracks
 
 _LONG_CLASSES: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_VEHICLES, "trailer", "bicycle"))
-_MOVING_MPS: Final = 1.0
-_LEAST_DISTINCT_DIFFERENCE_MPS: Final = 0.05
+_LEAST_MOVING_SPEED_MPS: Final = 1.0
+_LEAST_DISTINCT_VELOCITY_DIFFERENCE_MPS: Final = 0.05
 _SAME_VELOCITY_TOLERANCE_MPS: Final = 0.02
 _SAME_VELOCITY_REL_TOLERANCE: Final = 0.01
 """A velocity equals a difference of positions if both differ by less than `_SAME_VELOCITY_TOLERANCE_MPS` plus this share. (Rounded times
 change it by under 0.1 %.)"""
-_LEAST_SAME_SHARE: Final = 0.9
-_LEAST_SAMPLES: Final = 10
-_EVEN_STEP_TOLERANCE_M: Final = 1e-4
+_LEAST_SHARE_OF_SAME_VELOCITIES: Final = 0.9
+_LEAST_COMPARED_VELOCITIES: Final = 10
+_INTERPOLATED_STEP_TOLERANCE_M: Final = 1e-4
 _LEAST_WIDTH_TO_LENGTH: Final = 1.2
 """A box that is wider than long by this factor is not an inaccurate estimate of a square box."""
 _LEAST_MOTION_M: Final = 2.0
-_LEAST_HEADING_COSINE: Final = np.cos(np.radians(30.0))
+_LEAST_COSINE_OF_MOTION_TO_HEADING: Final = np.cos(np.radians(30.0))
 
 
-def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
+def drop_velocities_from_position_differences(tracks: Tracks) -> list[QualityFinding]:
     """Set velocities that are differences of the positions to NaN, in place: those of the ego, and those of all other actors.
 
     `finish_trace` derives better velocities, which are those at the step itself.
@@ -43,7 +43,7 @@ def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
     is_ego = np.arange(len(tracks.ids)) == tracks.ego
     findings = []
     for actors, owner in ((is_ego, "the ego"), (~is_ego, "the others")):
-        if (when := _early_or_late_if_differences(tracks, actors)) is None:
+        if (when := _early_or_late_if_velocities_are_position_differences(tracks, actors)) is None:
             continue
         n = int((actors[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
         tracks.velocity[actors] = np.nan
@@ -55,20 +55,20 @@ def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
     return findings
 
 
-def _early_or_late_if_differences(tracks: Tracks, actors: Mask) -> str | None:
+def _early_or_late_if_velocities_are_position_differences(tracks: Tracks, actors: Mask) -> str | None:
     """Return early or late if the velocities of these actors are differences of the positions; None if they are not.
 
     This shows only where an actor accelerates, brakes or turns, so that the displacements before and after differ.
     """
     steps = tracks.displacements_m[actors] / np.diff(tracks.t_s)[:, None]
     before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[actors][:, 1:-1]
-    tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _LEAST_DISTINCT_DIFFERENCE_MPS
-    if tells.sum() < _LEAST_SAMPLES:
+    tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _LEAST_DISTINCT_VELOCITY_DIFFERENCE_MPS
+    if tells.sum() < _LEAST_COMPARED_VELOCITIES:
         return None
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
         same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_REL_TOLERANCE * np.hypot(*np.moveaxis(step, 2, 0))
-        if same[tells].mean() > _LEAST_SAME_SHARE:
+        if same[tells].mean() > _LEAST_SHARE_OF_SAME_VELOCITIES:
             return when
     return None
 
@@ -79,7 +79,7 @@ def drop_false_zero_last_velocities(tracks: Tracks) -> list[QualityFinding]:
     ends[:, :-1] &= ~tracks.present[:, 1:]
     speed = np.zeros(ends.shape)
     speed[:, 1:] = np.nan_to_num(np.hypot(*np.moveaxis(tracks.displacements_m, 2, 0)) / np.diff(tracks.t_s))
-    false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > _MOVING_MPS)
+    false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > _LEAST_MOVING_SPEED_MPS)
     if not false.any():
         return []
     tracks.velocity[false] = np.nan
@@ -95,11 +95,11 @@ def actors_with_interpolated_positions(tracks: Tracks, dataset: DatasetFacts) ->
         return np.zeros(len(tracks.ids), np.bool_)
     off = np.abs(np.diff(tracks.displacements_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
     between = np.arange(1, len(tracks.t_s) - 1) % every != 0
-    even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_STEP_TOLERANCE_M).any(axis=1)
+    even: Mask = ~(np.nan_to_num(off[:, between]) > _INTERPOLATED_STEP_TOLERANCE_M).any(axis=1)
     return even
 
 
-def give_keyframe_velocities(tracks: Tracks, actors: Mask, steps_per_keyframe: int) -> list[QualityFinding]:
+def set_velocities_from_keyframes(tracks: Tracks, actors: Mask, steps_per_keyframe: int) -> list[QualityFinding]:
     """Give these actors the velocities of their keyframes, in place, and report that their accelerations are not known.
 
     The velocity at a keyframe is the mean from the keyframe before to the keyframe after, as in nuScenes' own `box_velocity`. Between two
@@ -178,4 +178,6 @@ def _moves_along_heading(tracks: Tracks, i: int) -> bool:
     heading = tracks.heading[i, :-1]
     way = np.hypot(*steps.T)
     along = np.abs(steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading))
-    return bool(np.nansum(way) > _LEAST_MOTION_M and np.nansum(along) > _LEAST_HEADING_COSINE * np.nansum(way))
+    return bool(
+        np.nansum(way) > _LEAST_MOTION_M and np.nansum(along) > _LEAST_COSINE_OF_MOTION_TO_HEADING * np.nansum(way)
+    )

@@ -47,7 +47,7 @@ class Tracks:
 def read_tracks(scenario: Scenario, t_s: Floats) -> Tracks:
     """Return the tracks of a scenario. Errors: `PickleError` for a track whose arrays are not as long as the scenario."""
     ids, n, steps = list(scenario.tracks), len(scenario.tracks), len(t_s)
-    scenario.refuse_if_over_file_size(n * steps, "steps of tracks")
+    scenario.refuse_if_more_values_than_file_bytes(n * steps, "steps of tracks")
     ego = str(scenario.metadata.get("sdc_id"))
     tracks = Tracks(
         ids,

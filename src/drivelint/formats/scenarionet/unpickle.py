@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 _ARRAY_NAME: Final = AllowedName("array")
 _KEY_TYPES: Final = frozenset({str, int, float, bool, type(None)})
 _DAMAGE_ERRORS: Final = (ValueError, TypeError, AttributeError, OverflowError, MemoryError, LookupError)
-_REMEDY: Final = "copy or write it again"
+_DAMAGE_REMEDY: Final = "copy or write it again"
 _READ_UINT: Final = struct.Struct("<I").unpack_from
 _READ_FLOAT: Final = struct.Struct(">d").unpack_from
 
 
-class _EndError(Exception):
+class _EndOfPickleError(Exception):
     """Raised by the operation that ends a pickle."""
 
 
@@ -49,9 +49,11 @@ def load(content: bytes) -> Any:
     except PickleError as error:
         raise PickleError(f"byte {machine.at}: {error}") from None
     except (IndexError, struct.error):
-        raise PickleError(f"it is cut off or damaged at byte {machine.at} of {len(content)}: {_REMEDY}") from None
+        raise PickleError(
+            f"it is cut off or damaged at byte {machine.at} of {len(content)}: {_DAMAGE_REMEDY}"
+        ) from None
     except _DAMAGE_ERRORS as error:
-        raise PickleError(f"it is damaged at byte {machine.at} ({error}): {_REMEDY}") from None
+        raise PickleError(f"it is damaged at byte {machine.at} ({error}): {_DAMAGE_REMEDY}") from None
 
 
 class _PickleMachine:
@@ -104,7 +106,7 @@ class _PickleMachine:
                     memo[self.next_memo_number] = stack[-1]
                     self.next_memo_number += 1
                     at += 1
-        except _EndError:
+        except _EndOfPickleError:
             if len(stack) != 1 or self.marks:
                 raise ValueError("it ends within a value") from None
             return stack[0]
@@ -117,10 +119,12 @@ class _PickleMachine:
         return partial(method, width=int(widths[0])) if widths else method
 
     def stop(self, _: int) -> NoReturn:
-        raise _EndError
+        raise _EndOfPickleError
 
     def refuse_operation(self, at: int) -> NoReturn:
-        raise PickleError(f"the operation {self.content[at - 1 : at]!r}, which plain values do not need: {_REMEDY}")
+        raise PickleError(
+            f"the operation {self.content[at - 1 : at]!r}, which plain values do not need: {_DAMAGE_REMEDY}"
+        )
 
     # ---- values
 
@@ -318,18 +322,18 @@ class _PickleMachine:
         if type(target) is not dict or len(values) % 2:
             raise TypeError("keys and values for something that is not a dict")
         if not _KEY_TYPES.issuperset(map(type, keys)):
-            raise PickleError(f"a key that is neither text nor number: {_REMEDY}")
+            raise PickleError(f"a key that is neither text nor number: {_DAMAGE_REMEDY}")
         target.update(zip(keys, values[1::2], strict=True))
 
     # ---- names and what is made with them
 
-    def push_name_in_lines(self, at: int) -> int:
+    def push_name_from_two_lines(self, at: int) -> int:
         middle = self.content.index(b"\n", at)
         end = self.content.index(b"\n", middle + 1)
         self.stack.append(allowed_name(self.content[at:middle].decode(), self.content[middle + 1 : end].decode()))
         return end + 1
 
-    def push_name_on_stack(self, at: int) -> int:
+    def push_name_from_stack_top(self, at: int) -> int:
         self.stack.append(allowed_name(*self._pop_values(2)))
         return at
 
@@ -358,7 +362,7 @@ class _PickleMachine:
         """Return the bytes that protocol 2 writes as a text."""
         self.bytes_left_to_copy -= len(text)
         if self.bytes_left_to_copy < 0:
-            raise PickleError(f"more bytes than the file has: {_REMEDY}")
+            raise PickleError(f"more bytes than the file has: {_DAMAGE_REMEDY}")
         return text.encode("latin-1")
 
     def set_state_of_value(self, at: int) -> int:
@@ -387,6 +391,6 @@ _OPERATIONS: Final = {
     0x29: "push_empty_tuple", 0x74: "push_tuple_since_mark", 0x85: "push_tuple1", 0x86: "push_tuple2", 0x87: "push_tuple3",
     0x7D: "push_empty_dict", 0x64: "push_dict_since_mark", 0x73: "set_item", 0x75: "set_items",
     0x8F: "push_empty_set", 0x90: "append_items", 0x91: "push_list_since_mark",
-    0x63: "push_name_in_lines", 0x93: "push_name_on_stack", 0x52: "create_named_value", 0x62: "set_state_of_value",
+    0x63: "push_name_from_two_lines", 0x93: "push_name_from_stack_top", 0x52: "create_named_value", 0x62: "set_state_of_value",
 }  # fmt: skip
 """Code of an operation (see `pickletools`) -> its method, and the width in bytes of its argument or of the argument's length."""

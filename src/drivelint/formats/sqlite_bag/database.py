@@ -32,7 +32,7 @@ _LOST_ROWS_TABLE: Final = "lost_and_found"
 """So begins the name of the table in which `.recover` of sqlite3 puts rows of unknown tables."""
 _REPAIRED_PREFIX: Final = "repaired-"
 _FILE_HEADER_BYTES: Final = 100
-_STEPS_PER_CALLBACK: Final = 100_000
+_SQLITE_STEPS_PER_PROGRESS_CALLBACK: Final = 100_000
 """SQLite returns to Python after so many of its steps, so that reading can be interrupted."""
 
 
@@ -45,12 +45,12 @@ def is_sqlite(path: Path) -> bool:
 @contextmanager
 def open_database(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a file of a bag, and check its tables. Errors: `TraceError` if it is damaged, not closed, or no bag."""
-    _refuse_unfinished(path)
-    with convert_errors(path):
+    _refuse_incomplete_file(path)
+    with convert_sqlite_errors(path):
         connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
         try:
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_CHUNK_BYTES)
-            connection.set_progress_handler(lambda: 0, _STEPS_PER_CALLBACK)
+            connection.set_progress_handler(lambda: 0, _SQLITE_STEPS_PER_PROGRESS_CALLBACK)
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.execute("PRAGMA cell_size_check = ON")
             _check_tables(path, connection)
@@ -60,7 +60,7 @@ def open_database(path: Path) -> Iterator[sqlite3.Connection]:
 
 
 @contextmanager
-def convert_errors(path: Path) -> Iterator[None]:
+def convert_sqlite_errors(path: Path) -> Iterator[None]:
     """Convert errors of SQLite about a file to `TraceError`."""
     try:
         yield
@@ -98,7 +98,7 @@ def is_repaired_with_losses(connection: sqlite3.Connection) -> bool:
     return connection.execute(query, (len(_LOST_ROWS_TABLE), _LOST_ROWS_TABLE)).fetchone() is not None
 
 
-def _refuse_unfinished(path: Path) -> None:
+def _refuse_incomplete_file(path: Path) -> None:
     """Raise `TraceError` for a file that is shorter than it says, or whose last changes are in another file."""
     with path.open("rb") as file:
         head = file.read(_FILE_HEADER_BYTES)

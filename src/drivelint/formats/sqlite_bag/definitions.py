@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _MESSAGE_TYPE_PATTERN: Final = re.compile(r"^([a-z]\w*/\w+)", re.MULTILINE)
 _MEMBER_PATTERN: Final = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w+", re.MULTILINE)
 _MOST_FILE_BYTES: Final = 1 << 20
-_MOST_MESSAGES: Final = 200
-_SEPARATOR: Final = "=" * 80
+_MOST_MESSAGE_TYPES_IN_DEFINITION: Final = 200
+_DEFINITION_SEPARATOR: Final = "=" * 80
 
 
 def candidate_definitions(kind: str) -> list[str]:
@@ -27,7 +27,7 @@ def candidate_definitions(kind: str) -> list[str]:
 
     [] for a type that is not known.
     """
-    messages, variants = _definition_tables()
+    messages, variants = _definitions_and_newer_variants()
     if kind not in messages:
         return []
     newest = messages | variants
@@ -47,12 +47,12 @@ def definition_in_files(folder: Path, kind: str) -> str:
             inner = _full_type_name(word, container)
             if inner is None or inner in messages:
                 continue
-            known = _definition_tables()[0].get(inner)
+            known = _definitions_and_newer_variants()[0].get(inner)
             messages[inner] = known if known is not None else _definition_file_text(folder, inner)
             waiting.append(inner)
-            if len(messages) > _MOST_MESSAGES:
-                raise UsageError(f"{folder}: {kind} contains more than {_MOST_MESSAGES} messages")
-    others = (f"{_SEPARATOR}\nMSG: {each}\n{text}" for each, text in messages.items() if each != kind)
+            if len(messages) > _MOST_MESSAGE_TYPES_IN_DEFINITION:
+                raise UsageError(f"{folder}: {kind} contains more than {_MOST_MESSAGE_TYPES_IN_DEFINITION} messages")
+    others = (f"{_DEFINITION_SEPARATOR}\nMSG: {each}\n{text}" for each, text in messages.items() if each != kind)
     return "\n".join([messages[kind], *others])
 
 
@@ -80,7 +80,7 @@ def _definition_file_text(folder: Path, kind: str) -> str:
 
 
 @cache
-def _definition_tables() -> tuple[dict[str, str], dict[str, str]]:
+def _definitions_and_newer_variants() -> tuple[dict[str, str], dict[str, str]]:
     tables = tomllib.loads(files(__package__).joinpath("definitions.toml").read_text(encoding="utf-8"))
     return tables["messages"], tables["variants"]
 
@@ -89,4 +89,6 @@ def _definition_with_members(kind: str, messages: dict[str, str]) -> str:
     used = [kind]
     for each in used:  # grows while it is read
         used += [inner for inner in dict.fromkeys(_MESSAGE_TYPE_PATTERN.findall(messages[each])) if inner not in used]
-    return "\n".join([messages[kind], *(f"{_SEPARATOR}\nMSG: {each}\n{messages[each]}" for each in used[1:])])
+    return "\n".join(
+        [messages[kind], *(f"{_DEFINITION_SEPARATOR}\nMSG: {each}\n{messages[each]}" for each in used[1:])]
+    )

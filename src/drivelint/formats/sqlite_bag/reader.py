@@ -36,9 +36,9 @@ MOST_TOPICS: Final = (1 << 16) - 1
 """MCAP numbers schemas and channels with 16 bits."""
 NO_DEFINITION_ENCODING: Final = ""
 """The encoding of a schema whose message definition is not known."""
-_MOST_SAMPLES: Final = 20
+_MOST_SAMPLE_MESSAGES: Final = 20
 """The definition of a type that has several is chosen by so many of its longest messages."""
-_LATEST_NS: Final = (1 << 63) - 1
+_LATEST_TIME_NS: Final = (1 << 63) - 1
 _GAPS_TEXT: Final = (
     "gaps in the row numbers of messages: {}: rows there were deleted, or lost in a repair: "
     "if you know of neither, copy the log again"
@@ -90,7 +90,7 @@ class SqliteFile(Container):
             n_bytes = last = n_gaps = 0
             for row, topic, t_ns in rows:
                 number = self._numbers.get(topic)
-                if number is None or type(t_ns) is not int or not 0 <= t_ns <= _LATEST_NS:
+                if number is None or type(t_ns) is not int or not 0 <= t_ns <= _LATEST_TIME_NS:
                     raise damage_error(
                         self.path, f"row {row} of messages has the topic {topic!r} and the time {t_ns!r}"
                     )
@@ -193,7 +193,7 @@ class SqliteFile(Container):
         rows = connection.execute(
             "SELECT messages.rowid, data FROM messages JOIN topics ON topics.id = topic_id WHERE type = ? "
             "ORDER BY length(data) DESC, messages.rowid LIMIT ?",
-            (kind, _MOST_SAMPLES),
+            (kind, _MOST_SAMPLE_MESSAGES),
         )
         channel = Channel(0, "", "cdr", {}, schema_id)
         return [RowMessage(channel, 0, data, row) for row, data in rows if isinstance(data, bytes)]

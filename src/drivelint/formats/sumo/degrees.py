@@ -30,18 +30,18 @@ _LEAST_DISPLACEMENT: Final = 1e-7
 """A smaller displacement is no motion: as degrees it is a centimetre, as metres a rounding error."""
 _LARGEST_DEGREES_PER_S: Final = 0.01
 """No vehicle drives 0.01 degrees in a second; an actor that moves by less than 0.01 metres in a second stands."""
-_LEAST_SPEED_RATIO: Final = 1000.0
+_LEAST_MPS_PER_DEGREE_PER_S: Final = 1000.0
 """A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the same speed in degrees per second."""
 _M_PER_DEGREE: Final = 111_195.0
 _LEAST_REPORTED_ERROR_M: Final = 0.005
-_DECIMALS: Final = range(1, 9)
+_TRIED_DECIMAL_COUNTS: Final = range(1, 9)
 _DEGREES_MESSAGE: Final = "its positions are longitude and latitude (fcd-output.geo)"
-_REMEDY: Final = (
+_DEGREES_REMEDY: Final = (
     "give the net that was simulated, with its projection, with --map, or record the log without fcd-output.geo"
 )
 
 
-def net_positions(
+def positions_in_net_and_findings(
     path: Path, rows: Rows, actor: NDArray[np.int32], net: Path | None
 ) -> tuple[Floats, list[QualityFinding]]:
     """Return the positions (n, 2) in metres of the net, and a finding on rounded positions.
@@ -52,13 +52,13 @@ def net_positions(
     if not _are_positions_degrees(path, rows, xy, actor, net):
         return xy, []
     if net is None:
-        raise TraceError(f"{path}: {_DEGREES_MESSAGE}: {_REMEDY}")
+        raise TraceError(f"{path}: {_DEGREES_MESSAGE}: {_DEGREES_REMEDY}")
     if (location := read_location(net)) is None:
-        raise TraceError(f"{path}: {_DEGREES_MESSAGE}, and {net.name} is no SUMO net: {_REMEDY}")
+        raise TraceError(f"{path}: {_DEGREES_MESSAGE}, and {net.name} is no SUMO net: {_DEGREES_REMEDY}")
     frame, trouble = location.geo_frame(), location.why_unconvertible()
     if frame is None or trouble:
         raise TraceError(
-            f"{path}: {_DEGREES_MESSAGE}, and the net {net.name} cannot convert them to metres: {trouble}: {_REMEDY}"
+            f"{path}: {_DEGREES_MESSAGE}, and the net {net.name} cannot convert them to metres: {trouble}: {_DEGREES_REMEDY}"
         )
     placed = np.isfinite(xy).all(axis=1)
     found = np.full_like(xy, np.nan)
@@ -101,13 +101,15 @@ def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool 
     speed = rows.numbers("speed")[order]
     mean = (speed[1:] + speed[:-1])[moved] / 2.0
     if np.isfinite(mean).any():
-        return bool(np.nanmedian(mean / per_s) > _LEAST_SPEED_RATIO)
+        return bool(np.nanmedian(mean / per_s) > _LEAST_MPS_PER_DEGREE_PER_S)
     return bool(np.median(per_s) < _LARGEST_DEGREES_PER_S)
 
 
 def _rounding_findings(degrees: Floats, net: Path) -> list[QualityFinding]:
     """Return a finding on the error of positions that were written with few decimals."""
-    digits = next((n for n in _DECIMALS if np.abs(degrees * 10.0**n - np.round(degrees * 10.0**n)).max() < 1e-3), None)
+    digits = next(
+        (n for n in _TRIED_DECIMAL_COUNTS if np.abs(degrees * 10.0**n - np.round(degrees * 10.0**n)).max() < 1e-3), None
+    )
     along = float(np.cos(np.radians(degrees[:, 1].mean())))  # a degree of longitude, as a share of one of latitude
     error_m = 0.0 if digits is None else _M_PER_DEGREE * 0.5 * 10.0**-digits * float(np.hypot(1.0, along))
     if error_m < _LEAST_REPORTED_ERROR_M:

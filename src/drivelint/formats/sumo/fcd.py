@@ -19,7 +19,7 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.sumo.boxes import RowActors, boxes_of
-from drivelint.formats.sumo.degrees import net_positions
+from drivelint.formats.sumo.degrees import positions_in_net_and_findings
 from drivelint.formats.sumo.fcd_tables import column_groups, read_csv, read_parquet
 from drivelint.formats.sumo.fcd_xml import ROOT_TAG, read_xml
 from drivelint.formats.sumo.lights import add_light_states
@@ -47,7 +47,7 @@ takes_mapping: Final = True
 HEAD_BYTES = 65536
 _LARGEST_TIME_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
-_KIND_OF_CLASS: Final = {None: UNKNOWN_KIND, "pedestrian": PERSON, "object": CONTAINER}
+_KIND_BY_ACTOR_CLASS: Final = {None: UNKNOWN_KIND, "pedestrian": PERSON, "object": CONTAINER}
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
@@ -89,7 +89,7 @@ def read(probe: Probe) -> Recording:
     if untimed:
         raise TraceError(f"{path}: rows of vehicles without a valid time: {untimed}: write the log again")
     types, notes = types_and_notes(path, probe.options.mapping)
-    rows = rows._replace(kind=_kinds_by_type(rows, types))
+    rows = rows._replace(kind=_row_kinds_from_types(rows, types))
     rides = is_riding(rows)
     if rides.all():
         raise TraceError(f"{path}: no vehicle in this log")
@@ -148,7 +148,7 @@ def _times_ns(rows: Rows) -> Times:
     return np.round(rows.numbers("time") * 1e9).astype(np.int64)
 
 
-def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
+def _row_kinds_from_types(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     """Return the kinds of the rows. A table's column names do not show the kind of a row; the row's type does, if it is known."""
     open_ = np.isin(rows.kind, (UNKNOWN_KIND, PERSON_OR_CONTAINER))
     if not open_.any():
@@ -156,7 +156,7 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     ids = frozenset(pc.unique(rows.table["id"]).to_pylist())
     said = [type_and_original(name, types, ids)[0] for name in names.dictionary.to_pylist()]
-    by_type = np.array([_KIND_OF_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
+    by_type = np.array([_KIND_BY_ACTOR_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
         names.indices.to_numpy()
     ]
     # a carried person stays a person whatever vehicle class its type has
@@ -198,7 +198,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     row_actors = RowActors(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
     boxes = boxes_of(row_actors, types, options)
-    xy, findings = net_positions(path, rows, actor, options.map)
+    xy, findings = positions_in_net_and_findings(path, rows, actor, options.map)
     yaw = wrap_angles(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)
     is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN_KIND))
@@ -215,7 +215,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
         actor,
         _times_ns(rows),
         numbers,
-        {"actor_class": boxes.actor_class, **_light_codes(signals)},
+        {"actor_class": boxes.actor_class, **_vehicle_light_codes(signals)},
         np.any([pc.is_inf(c).to_numpy() for c in rows.table.columns if pa.types.is_floating(c.type)], axis=0),
     )
     angleless = int(np.isnan(angle).sum())
@@ -227,7 +227,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     return Recording("sumo-fcd", states, findings=[*boxes.findings, *findings], notes=notes)
 
 
-def _light_codes(signals: Floats) -> dict[str, Codes]:
+def _vehicle_light_codes(signals: Floats) -> dict[str, Codes]:
     has_signals = (signals >= 0) & (signals < 2**31)
     bits = np.where(has_signals, signals, 0).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)

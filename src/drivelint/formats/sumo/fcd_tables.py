@@ -34,7 +34,7 @@ _NUMBER_COLUMNS: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
 _READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
 _NUMBER_PATTERN: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
-_VEHICLE_ATTRIBUTES: Final = ("signals", "acceleration")
+_VEHICLE_ONLY_ATTRIBUTES: Final = ("signals", "acceleration")
 """Attributes that only vehicles have."""
 
 
@@ -98,7 +98,7 @@ def _rows_of_table(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -
     if len(groups) == 1:
         (columns,) = groups.values()
         try:
-            kind, own = _kinds_and_columns({name: table[column] for name, column in columns.items()})
+            kind, own = _row_kinds_and_cleaned_columns({name: table[column] for name, column in columns.items()})
         except pa.ArrowException as error:
             raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log again") from error
         return typed_rows(path, own, kind)
@@ -114,17 +114,17 @@ def _rows_of_table(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -
     return Rows(joined.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
 
 
-def _kinds_and_columns(
+def _row_kinds_and_cleaned_columns(
     columns: dict[str, pa.ChunkedArray | pa.Array],
 ) -> tuple[Codes, dict[str, pa.ChunkedArray | pa.Array]]:
     """Return the kinds of the rows, and the columns without the values of other kinds' attributes."""
     n = len(columns["time"])
-    kind = _kinds_by_lane(n, columns)
+    kind = _row_kinds_from_lanes(n, columns)
     null_text = pa.scalar(None, pa.string())
     if "vehicle" in columns:
         carried = pa.array(kind == PERSON_OR_CONTAINER)
         columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), null_text)
-    for name in _VEHICLE_ATTRIBUTES:
+    for name in _VEHICLE_ONLY_ATTRIBUTES:
         if name in columns and not (kind == VEHICLE).all():
             texts = columns[name].cast(pa.string())
             may_be = pc.and_(pa.array(kind != PERSON_OR_CONTAINER), pc.match_substring_regex(texts, _NUMBER_PATTERN))
@@ -132,7 +132,7 @@ def _kinds_and_columns(
     return kind, columns
 
 
-def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
+def _row_kinds_from_lanes(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
     """Return the kinds of the rows by their place in the net: a vehicle is on a lane, a person or container on an edge.
 
     In a mesoscopic simulation, no actor is on a lane: the kinds are unknown.

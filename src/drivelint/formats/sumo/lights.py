@@ -48,7 +48,7 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     files = [
         file for file in sorted(log.parent.glob(_LIGHT_STATES_FILE_PATTERN)) if file != log and _has_light_states(file)
     ]
-    log_files = [file for file in files if _name_to_first_dot(file) == _name_to_first_dot(log)]
+    log_files = [file for file in files if _name_up_to_first_dot(file) == _name_up_to_first_dot(log)]
     if (
         not log_files
         and len(files) == 1
@@ -60,11 +60,11 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     elif files:
         what = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
         names = name_list([file.name for file in log_files or files])
-        note = f"{log.name}: light states in {names} are not read: {what}: call it {_name_to_first_dot(log)}.tls.xml"
+        note = f"{log.name}: light states in {names} are not read: {what}: call it {_name_up_to_first_dot(log)}.tls.xml"
         recording.notes.append(note)
 
 
-def _name_to_first_dot(file: Path) -> str:
+def _name_up_to_first_dot(file: Path) -> str:
     return file.name.partition(".")[0]
 
 
@@ -80,7 +80,7 @@ def _read_light_states(file: Path, recording: Recording) -> None:
     except TraceError as error:
         recording.findings.append(QualityFinding("lights_unread", "warning", str(error)))
         return
-    recording.signals, times_s, unread = _rows_times_and_unread(root.iter("tlsState"))
+    recording.signals, times_s, unread = _rows_times_and_unreadable_states(root.iter("tlsState"))
     recording.notes.append(f"the states of traffic lights are those of {file.name} beside it")
     if lacks_end:
         recording.notes.append(f"{file.name} ends without </tlsStates>: its writer did not finish it")
@@ -93,7 +93,7 @@ def _read_light_states(file: Path, recording: Recording) -> None:
         recording.lost_times += times_of_lost_rows(t_ns, timed, unread, what)
 
 
-def _rows_times_and_unread(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
+def _rows_times_and_unreadable_states(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
     """Return the rows of all connections, and for each state its time in seconds and whether it cannot be read."""
     states_by_light: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
     every: list[float] = []

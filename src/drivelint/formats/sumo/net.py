@@ -63,7 +63,7 @@ _CLASSES_BY_LANE_KIND: Final = (
 )
 _ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _CLASSES_BY_LANE_KIND))
 _DRIVABLE_KINDS: Final = frozenset({"driving", "bus", "taxi", "HOV"})
-_ROAD_TYPES: Final = {
+_ROAD_TYPE_BY_EDGE_TYPE: Final = {
     "motorway": "motorway",
     "motorway_link": "motorway",
     "residential": "town",
@@ -188,7 +188,7 @@ def _bounded_lane(
     return BoundedLane(
         str(element.attrib["id"]), left=_parallel_line(middle, half), right=_parallel_line(middle, -half),
         kind=kind, drivable=kind in _DRIVABLE_KINDS,
-        road_type=_ROAD_TYPES.get((edge.get("type") or "").removeprefix("highway.")),
+        road_type=_ROAD_TYPE_BY_EDGE_TYPE.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
         limits=() if posted is None else ((0.0, 1.0, posted),),
     )  # fmt: skip
@@ -239,7 +239,7 @@ def _connect_lanes(root: etree._Element, net: _Net) -> None:
     _bend_internal_lanes(net)
     inside = [lane for edge in net.edges if edge in net.internal_edges for lane in net.edges[edge]]
     for _ in range(2):  # a connection has two internal lanes where vehicles wait inside the junction
-        _continue_limits_into_junctions(net.lanes, follows, inside)
+        _continue_speed_limits_into_junctions(net.lanes, follows, inside)
 
 
 def _bend_internal_lanes(net: _Net) -> None:
@@ -277,7 +277,7 @@ def _bent_centre_line(centre_line: Floats, joined_lane: BoundedLane, end: int) -
     return np.insert(centre_line, at, centre_line[end] + _ADDED_POINT_DISTANCE_M * step, axis=0)
 
 
-def _continue_limits_into_junctions(
+def _continue_speed_limits_into_junctions(
     lanes: Mapping[str, BoundedLane], successors: Mapping[str, Iterable[str]], junction_lanes: Iterable[str]
 ) -> None:
     waiting = {name for name in junction_lanes if not lanes[name].limits}

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _TURNS_BY_DIRECTION: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
-_SIGNED_JUNCTION_TYPES: Final = frozenset({"priority", "priority_stop", "allway_stop"})
+_JUNCTION_TYPES_WITH_SIGNS: Final = frozenset({"priority", "priority_stop", "allway_stop"})
 """Types of junctions with signs on the minor roads. At other types, right goes before left, lights decide, or the rule is not known."""
 _SIGN_OF_LINK_STATE: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _U_TURN_DIRECTION: Final = "t"
@@ -31,14 +31,14 @@ _U_TURN_DIRECTION: Final = "t"
 def signal_and_stop_line_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
     """Return rows of `traffic_signal` and of `stop_line`: a stop line is at the end of each lane with a light or a stop sign."""
     links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
-    signals, lines = _light_rows_and_ending_lanes(links, lanes)
-    signed, stops = _sign_rows_and_stop_lanes(root, links, lanes)
+    signals, lines = _light_rows_and_lanes_ending_at_lights(links, lanes)
+    signed, stops = _sign_rows_and_lanes_ending_at_stop_signs(root, links, lanes)
     lines |= stops
     rows = [stop_line_row(f"end of {name}", name, lanes[name].line.length, "connection") for name in sorted(lines)]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
 
 
-def _light_rows_and_ending_lanes(
+def _light_rows_and_lanes_ending_at_lights(
     links: list[etree._Element], lanes: Mapping[str, BoundedLane]
 ) -> tuple[Rows, set[str]]:
     """Return a row for each signal head and lanelet in the junction to which it applies, and the lanes that end at a head.
@@ -64,7 +64,7 @@ def _light_rows_and_ending_lanes(
     return rows, ends
 
 
-def _sign_rows_and_stop_lanes(
+def _sign_rows_and_lanes_ending_at_stop_signs(
     root: etree._Element, links: list[etree._Element], lanes: Mapping[str, BoundedLane]
 ) -> tuple[Rows, set[str]]:
     kinds = {junction.get("id"): junction.get("type") for junction in root.iterfind("junction")}
@@ -74,7 +74,7 @@ def _sign_rows_and_stop_lanes(
         if (
             link.get("tl") is None
             and link.get("dir") != _U_TURN_DIRECTION
-            and ends.get(link.get("from")) in _SIGNED_JUNCTION_TYPES
+            and ends.get(link.get("from")) in _JUNCTION_TYPES_WITH_SIGNS
         ):
             states[link.get("from", "")].add(link.get("state", ""))
     rows: Rows = []

@@ -196,7 +196,7 @@ def _read_states(path: Path) -> Recording:
     return recording
 
 
-def with_empty_frames(states: pa.Table, trace: Trace) -> pa.Table:
+def with_rows_of_times_without_actors(states: pa.Table, trace: Trace) -> pa.Table:
     """Return the states with an added row, which has only a time, for each frame without actors."""
     n = len(trace.times_without_actors_ns)
     if not n:

@@ -270,7 +270,7 @@ def validate(path: Path, mapping: Mapping) -> None:
         raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
     for name, spec in fields(mapping).items():
         _validate_field(path, name, spec)
-    for is_wrong, what in _contradictions(mapping, fields(mapping).keys()):
+    for is_wrong, what in _possible_contradictions(mapping, fields(mapping).keys()):
         if is_wrong:
             raise UsageError(f"mapping {path}: {what}")
     for name, (choice, allowed) in word_mappings(mapping).items():
@@ -288,7 +288,7 @@ def _validate_field(path: Path, name: str, spec: Field) -> None:
         raise UsageError(f"mapping {path}: {name}: the value {spec.value!r} is not a number")
 
 
-def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[bool, str]]:
+def _possible_contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[bool, str]]:
     """Return each possible contradiction: whether the mapping has it, and its description. `names`: the fields of the mapping."""
     point = mapping.reference.point
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"

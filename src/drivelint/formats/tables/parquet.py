@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 T = TypeVar("T")
-FREE_UNPACKED_BYTES: Final = 512 << 20
+UNPACKED_BYTES_ALLOWED_FOR_ANY_FILE: Final = 512 << 20
 MOST_UNPACKED_PER_PACKED_BYTE: Final = 500
-"""A file is refused if it unpacks to more than `FREE_UNPACKED_BYTES` and this multiple of its size: recorded data do not pack so well."""
+"""A file is refused if it unpacks to more than `UNPACKED_BYTES_ALLOWED_FOR_ANY_FILE` and this multiple of its size: recorded data do not
+pack so well."""
 _MAGIC: Final = b"PAR1"
 
 
@@ -57,7 +58,7 @@ def _read_from_open_file(path: Path, read_part: Callable[[pq.ParquetFile], T]) -
                 what = f"it begins {head!r}" if head else "it is empty (0 bytes)"
                 raise TraceError(f"{path}: not Parquet: {what}: copy it again")
             opened = pq.ParquetFile(file, page_checksum_verification=True)
-            _refuse_second_file(path, file)
+            _refuse_concatenated_files(path, file)
             names = opened.schema_arrow.names
             if twice := [name for name in names if names.count(name) > 1]:
                 raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
@@ -68,14 +69,14 @@ def _read_from_open_file(path: Path, read_part: Callable[[pq.ParquetFile], T]) -
 
 def _refuse_if_unpacked_too_large(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
     unpacked = metadata.num_rows * n_columns * 8
-    if unpacked > max(FREE_UNPACKED_BYTES, MOST_UNPACKED_PER_PACKED_BYTE * path.stat().st_size):
+    if unpacked > max(UNPACKED_BYTES_ALLOWED_FOR_ANY_FILE, MOST_UNPACKED_PER_PACKED_BYTE * path.stat().st_size):
         raise TraceError(
             f"{path}: {metadata.num_rows} rows in a file of {path.stat().st_size} bytes would unpack to {unpacked >> 20} MiB: "
             "write it again"
         )
 
 
-def _refuse_second_file(path: Path, file: BufferedReader) -> None:
+def _refuse_concatenated_files(path: Path, file: BufferedReader) -> None:
     """Raise `TraceError` if two Parquet files are concatenated, because the last footer's offsets would be applied to the first file.
 
     The file is searched for magic bytes, because pyarrow ends the process if it reads column metadata with damaged statistics.

@@ -33,7 +33,7 @@ from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import (
     FINDING_ENTRY_COLUMNS,
     evidence_values_of_rules,
-    findings_with_sql_text,
+    phrase_on_findings_with_sql,
     sha256_by_path,
 )
 from drivelint.pack.inputs import request_with_present_paths
@@ -57,7 +57,7 @@ AUDIT_FOLDER: Final = f"{DATA}/audit"
 UNCHUNKED_FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
 FINDING_KEYS: Final = ("key", *FINDING_ENTRY_COLUMNS)
 """The fields of `evidence.json` about a finding of an audit. `key` identifies its drive."""
-_SUMMARY_KEYS_OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
+_SUMMARY_KEYS_NOT_FROM_TABLES: Final = frozenset({"reused", "n_asked", "n_absent"})
 """The keys of `summary.json` about the run that wrote it; they cannot be derived from the tables."""
 
 
@@ -115,7 +115,7 @@ def contradicted_summary_keys(
     counted = summary_of_all_drives(con, 0).file_content() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
         key
-        for key in (counted.keys() | packed_summary.keys()) - _SUMMARY_KEYS_OF_RUN
+        for key in (counted.keys() | packed_summary.keys()) - _SUMMARY_KEYS_NOT_FROM_TABLES
         if packed_summary.get(key) != counted.get(key)
     )
 
@@ -203,7 +203,7 @@ def n_copies_without_findings(con: duckdb.DuckDBPyConnection, findings: Sequence
 def packed_findings_text(pack_folder: Path, evidence: dict[str, Any]) -> str:
     """Return in words how many of the findings in the pack of an audit have SQL."""
     with open_audit_in_evidence_pack(pack_folder / AUDIT_FOLDER) as (con, _):
-        return findings_with_sql_text(worst_findings(con, n_packed_findings(evidence)), evidence["findings"])
+        return phrase_on_findings_with_sql(worst_findings(con, n_packed_findings(evidence)), evidence["findings"])
 
 
 def packed_drives(
@@ -278,7 +278,7 @@ def given_logs_by_key(
     return found
 
 
-def drive_request_with_paths(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
+def drive_request_with_present_paths(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
     """Return the check of a drive with the present paths of its log and map, after comparing both with their hashes.
 
     `log`: None: the original path. `map_`: used only if the drive was judged on this map. Errors: as `request_with_present_paths`.

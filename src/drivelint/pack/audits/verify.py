@@ -179,7 +179,7 @@ def _problems_of_drive(
     if log is None and inputs is None:
         return _problems_of_finding_sql(pack, drive)
     try:
-        check_request = tables.drive_request_with_paths(drive, log, map_)
+        check_request = tables.drive_request_with_present_paths(drive, log, map_)
     except UsageError as error:
         if log is not None:
             raise
@@ -207,7 +207,9 @@ def _problems_of_drive(
         for file, content in contents.items()
     }
     other_libraries = pack.evidence["packed_with"] != library_versions()
-    differing, other_bytes = reproduction.file_differences(pack.folder, files, {}, other_libraries=other_libraries)
+    differing, other_bytes = reproduction.file_problems_and_whether_bytes_differ(
+        pack.folder, files, {}, other_libraries=other_libraries
+    )
     pack.other_bytes |= other_bytes
     there = {path.relative_to(pack.folder).as_posix() for path in (pack.folder / place).rglob("*") if path.is_file()}
     extra = sorted(there - files.keys())

@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def functions_for_audit(request: PackRequest) -> PackContentFunctions:
+def functions_that_pack_audit(request: PackRequest) -> PackContentFunctions:
     """Return the functions that pack an audit. Errors: `UsageError` for an audit that has not ended."""
     with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
-    return PackContentFunctions(lambda work: _write_payload(work, request), in_toto_statement)
+    return PackContentFunctions(lambda work: _write_payload_and_return_evidence(work, request), in_toto_statement)
 
 
-def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
+def _write_payload_and_return_evidence(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
     """Copy the tables, judge the drives of the worst findings again, and write their evidence. Return the content of `evidence.json`."""
     results = LocalFolder(request.folder)
     names = tables.packed_file_names(results)
@@ -56,9 +56,9 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
         given = tables.given_logs_by_key(con, findings, request.traces)
         found = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            check_request = tables.drive_request_with_paths(drive, given.get(drive.key), request.map)
-            inputs.add(drive.key, check_request)
-            found += _write_findings_of_drive(pack_folder, drive, check_request, loaded_rules)
+            check_request = tables.drive_request_with_present_paths(drive, given.get(drive.key), request.map)
+            inputs.copy_inputs_of_drive(drive.key, check_request)
+            found += _write_findings_and_return_entries(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
             "evidence": contents.AUDIT_FORMAT_VERSION,
@@ -76,7 +76,7 @@ def _write_payload(pack_folder: Path, request: PackRequest) -> dict[str, Any]:
     return told
 
 
-def _write_findings_of_drive(
+def _write_findings_and_return_entries(
     pack_folder: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
 ) -> list[dict[str, Any]]:
     """Write the data that reproduce the findings of a drive; return their entries for `evidence.json`."""
@@ -100,7 +100,7 @@ class _InputCopier:
         self.traces: dict[str, str] = {}
         self.maps: dict[str, str] = {}
 
-    def add(self, key: str, check_request: RunRequest) -> None:
+    def copy_inputs_of_drive(self, key: str, check_request: RunRequest) -> None:
         """Copy the mapping of a drive, and with `with_inputs` its log and map. `check_request` has their present paths."""
         if (
             check_request.mapping is not None and Path(check_request.mapping).is_file()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 MAX_LISTED_FINDINGS: Final = 40
 """The page lists this many findings of the earlier result per status."""
-_FOLDED_STATUSES: Final = ("changed", *NOT_FIXED_WORDS, "fixed")
+_STATUSES_OF_DIFFERING_BASELINE_FINDINGS: Final = ("changed", *NOT_FIXED_WORDS, "fixed")
 _WAIVER_STATES: Final = {"expired": "expired", "unmatched": "matches no finding", "active": "in force"}
 """The states of a waiver in words; states that need action come first."""
 _STATUS_LABELS: Final = {
@@ -55,7 +55,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     elif kind == "possible":
         why = descriptions.why_gate_excludes(gate, finding_id)
     elif entry is not None and entry.standing == "new":
-        why = f"before: {descriptions.other_verdict_words(entry)}: {entry.why}"
+        why = f"before: {descriptions.words_for_verdict_of_other_result(entry)}: {entry.why}"
     elif entry is not None and entry.standing == "changed":
         why = entry.why
     return BaselineStatus(kind, _status_label(gate, kind), why)
@@ -77,7 +77,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     shown = [kind for kind in _STATUS_LABELS if kind != ("open" if gate.baseline is not None else "new")]
     given = {"waived": bool(gate.waivers), "known": gate.baseline is not None, "possible": gate.confidence is not None}
     before = gate.baseline
-    gone = {kind: before.with_diff_status(kind) for kind in _FOLDED_STATUSES} if before else {}
+    gone = {kind: before.with_diff_status(kind) for kind in _STATUSES_OF_DIFFERING_BASELINE_FINDINGS} if before else {}
     return {
         "since": before.base_name if before else "",
         "confidence": gate.confidence,

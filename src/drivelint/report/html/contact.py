@@ -9,7 +9,7 @@ from drivelint.result.text import closing_words, seconds
 if TYPE_CHECKING:
     from drivelint.result.text import Row
 
-MOST_TIME_BEFORE_NS: Final = 1_000_000_000
+LONGEST_TIME_BEFORE_CONTACT_NS: Final = 1_000_000_000
 """Speeds measured earlier than this before the contact are not used."""
 
 
@@ -25,7 +25,7 @@ def speeds_before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, 
         {point["t_ns"]: point for point in ways.get(who, [])} for who in (contact["ego_id"], contact["object_id"])
     )
     times = sorted(t for t in ego.keys() & met.keys() if t < contact["t_start_ns"])
-    if not times or contact["t_start_ns"] - times[-1] > MOST_TIME_BEFORE_NS:
+    if not times or contact["t_start_ns"] - times[-1] > LONGEST_TIME_BEFORE_CONTACT_NS:
         return None
     last = times[-1]
     speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]

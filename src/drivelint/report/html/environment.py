@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 TEMPLATES_FOLDER: Final = Path(__file__).parent / "templates"
-_MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
+_MPS2_PATTERN: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
 PICTURE_STYLE_FILE: Final = "pictures.css"
 """The style of pictures from cameras; only pages with such pictures contain it."""
 _STYLE_FILES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
@@ -82,7 +82,7 @@ def escape_for_page(value: Any) -> Any:
 
     The unit m/s2, alone or after a number, becomes m/s².
     """
-    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is safe
+    return _MPS2_PATTERN.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is safe
 
 
 def _concatenated_texts(files: Iterable[Path]) -> str:

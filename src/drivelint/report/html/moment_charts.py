@@ -20,7 +20,7 @@ WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
 _HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a chart, of the text above it, of the time axis
 _LINE = 14.0  # of a second line of the text above a chart
-_MOST_JOINED_NS: Final = 1_000_000_000
+_LONGEST_JOINED_GAP_NS: Final = 1_000_000_000
 _LEAST_VALUES_FOR_CHART: Final = 3
 """The least number of values for which a chart is drawn."""
 _CHAR_WIDTH: Final = 6.6
@@ -182,7 +182,7 @@ def _failing_spans(course: Row, x: Axis) -> list[tuple[str, str]]:
     """Return the periods in which the rule was not kept, each as position and width."""
     runs: list[list[int]] = []
     for t, kept in zip(course["t_ns"], course["holds"], strict=True):
-        if kept is False and runs and t - runs[-1][1] <= _MOST_JOINED_NS and runs[-1][2]:
+        if kept is False and runs and t - runs[-1][1] <= _LONGEST_JOINED_GAP_NS and runs[-1][2]:
             runs[-1][1] = t
         elif kept is False:
             runs.append([t, t, 1])
@@ -198,7 +198,7 @@ def _line_path(line: ChartLine, x: Axis, y: Axis) -> str:
     for t, value in zip(line.t_ns, line.values, strict=True):
         if value is not None:
             parts.append(
-                f"{'M' if last is None or t - last > _MOST_JOINED_NS else 'L'}{svg_number(x.at(t))},{svg_number(y.at(value))}"
+                f"{'M' if last is None or t - last > _LONGEST_JOINED_GAP_NS else 'L'}{svg_number(x.at(t))},{svg_number(y.at(value))}"
             )
         last = t if value is not None else None
     return "".join(parts)
