@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Indices
 
 FIRST_PART_SHAPES: Final = 8
-MOST_GROWTH_OF_PART: Final = 8
+MOST_GROWTH_FACTOR_OF_PART: Final = 8
 PAIRS_PER_PART: Final = 1_000_000
 """The aim for the number of pairs in a part; the size of a part follows from the pairs per shape in the part before."""
 MOST_SHAPES_AT_ONE_PLACE: Final = 1000
@@ -49,7 +49,7 @@ def query_in_parts(
             raise CrowdedPlaceError(n_at_one)
         yield shape + begin, found
         begin += n
-        n = max(1, min(MOST_GROWTH_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
+        n = max(1, min(MOST_GROWTH_FACTOR_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
 
 
 def all_pairs(

@@ -169,7 +169,7 @@ def _has_row_without_source_rows(node: Node, *, lateral: bool) -> bool:
     return node["having"] is not None or any(name in _aggregates() or name.endswith("_agg") for name in calls)
 
 
-def branches(node: Node) -> list[Node]:
+def union_queries(node: Node) -> list[Node]:
     """Return the queries that a UNION or another set operation combines."""
     return [node["left"], node["right"]] if "left" in node else list(node["children"])
 
@@ -179,7 +179,7 @@ def column_name(item: Node) -> str:
     return _lower_case(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
-def offset_of(part: Any) -> int | None:
+def byte_offset_of(part: Any) -> int | None:
     """Return a node's byte offset in the SQL, or that of its first inner node with an offset; None without any offset."""
     todo = [part]
     while todo:

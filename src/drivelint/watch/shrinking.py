@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from drivelint.watch.alarms import Key
     from drivelint.watch.judge import JudgedWindow
 
-SLOPE_SPAN_NS: Final = 1_000_000_000
+MARGIN_SLOPE_SPAN_NS: Final = 1_000_000_000
 """The time before the newest step from which the rate of change of a margin is computed."""
 
 MOST_TIME_TO_ZERO_S: Final = 60.0
@@ -42,8 +42,8 @@ class ShrinkingMargins:
             if not len(t_ns):
                 continue
             rule = rules[row["rule_id"]]
-            last = t_ns > t_ns[-1] - SLOPE_SPAN_NS
-            is_now = t_ns[-1] >= window.t_end_ns - SLOPE_SPAN_NS // 2
+            last = t_ns > t_ns[-1] - MARGIN_SLOPE_SPAN_NS
+            is_now = t_ns[-1] >= window.t_end_ns - MARGIN_SLOPE_SPAN_NS // 2
             is_near = rule.near_margin is not None and 0 <= margin[-1] < rule.near_margin
             if not (is_now and is_near):
                 continue

@@ -75,7 +75,7 @@ def worst_moment(
                 ("near", "also only just kept", itemgetter("title")),
             )
         ],
-        "commands": _commands(row),
+        "commands": _explain_and_report_commands(row),
         "files": _links_to_files(row, folder),
     }
 
@@ -91,7 +91,7 @@ def _explain_argument(row: Row) -> str:
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
-def _commands(row: Row) -> list[list[str]]:
+def _explain_and_report_commands(row: Row) -> list[list[str]]:
     """Return the commands that explain and document a finding or near miss, each in parts, for the folder of a result."""
     explain = ["drivelint explain", shlex.quote(_explain_argument(row)), "--in ."]
     return [explain, ["drivelint report .", f"--incident {shlex.quote(_explain_argument(row))}"]]
