@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from drivelint.scene.document import Crossroads, LaneEntry, RoadEntry, RoadLayout, Roundabout
 
 _ANGLE_BY_COMPASS_POINT: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
-_LANE: Final = re.compile(r"(.+) (-?\d+)")
+_ROAD_AND_LANE_NUMBER: Final = re.compile(r"(.+) (-?\d+)")
 _KINDS_OF_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
 _FORMS_OF_NAMED_THINGS: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
@@ -51,7 +51,7 @@ def roads_of(layout: RoadLayout) -> dict[str, Road]:
     if not texts:
         raise UsageError("a layout has roads, a crossing or a roundabout")
     roads: dict[str, Road] = {}
-    for name in _names_after_predecessors(texts):
+    for name in _road_names_each_after_its_predecessor(texts):
         roads[name] = _road(name, texts[name], roads)
     for name in ("crossing", "roundabout"):
         if name in roads:
@@ -62,7 +62,7 @@ def roads_of(layout: RoadLayout) -> dict[str, Road]:
 
 def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
     """Return the name of the road and the number of the lane in a text such as `main -1`. Errors: `UsageError`."""
-    if (found := _LANE.fullmatch(text.strip())) is None:
+    if (found := _ROAD_AND_LANE_NUMBER.fullmatch(text.strip())) is None:
         raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
     name, number = found[1], int(found[2])
     if name not in roads:
@@ -71,7 +71,7 @@ def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int
     return name, number
 
 
-def _names_after_predecessors(texts: Mapping[str, RoadEntry]) -> list[str]:
+def _road_names_each_after_its_predecessor(texts: Mapping[str, RoadEntry]) -> list[str]:
     """Return the names of the roads, each after the road that it continues."""
     order: list[str] = []
     for name in texts:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
-LIFETIMES: Final = ("map", "drive", "part", "run")
+TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
 """How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
 one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
@@ -301,9 +301,9 @@ def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
     found = {table: lifetime for lifetime, table in _LIFETIME.findall(_schema_sql())}
     for table in column_comments():
-        if found.get(table) not in LIFETIMES:
+        if found.get(table) not in TABLE_LIFETIMES:
             raise DriveLintError(
-                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(LIFETIMES)} above it"
+                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(TABLE_LIFETIMES)} above it"
             )
     return found
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MARGIN_SLOPE_SPAN_NS: Final = 1_000_000_000
 """The time before the newest step from which the rate of change of a margin is computed."""
 
-MOST_TIME_TO_ZERO_S: Final = 60.0
+MOST_TIME_UNTIL_MARGIN_IS_ZERO_S: Final = 60.0
 """A margin that would reach 0 later than this counts as constant: the last digits of a constant margin may vary."""
 
 
@@ -51,7 +51,7 @@ class ShrinkingMargins:
             if key in self._open or last.sum() < 2:
                 continue
             per_s = np.polyfit((t_ns[last] - t_ns[-1]) / 1e9, margin[last], 1)[0]
-            if per_s >= 0 or -margin[-1] / per_s > MOST_TIME_TO_ZERO_S:
+            if per_s >= 0 or -margin[-1] / per_s > MOST_TIME_UNTIL_MARGIN_IS_ZERO_S:
                 seen.pop(key)
                 continue
             found.append({

@@ -30,7 +30,9 @@ _VIEW_PADDING_M: Final = (7.0, 3.5)
 _DRAWN_SIZE_IF_UNKNOWN_M: Final = 0.8  # the drawn size of an actor whose size is unknown
 _MOST_OTHER_ACTORS_WITH_LONG_LABEL: Final = 5
 _SCALE_BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
-_ROOM_BESIDE_VIEW_SHARE: Final = 0.5  # actors up to half a view outside may enter the view when the scene is replayed
+_ACTORS_KEPT_BESIDE_VIEW_SHARE: Final = (
+    0.5  # actors up to half a view outside may enter the view when the scene is replayed
+)
 _TOUCHING_DISTANCE_M: Final = 0.005  # boxes nearer than this touch
 
 
@@ -106,7 +108,7 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
             for a in sorted(
                 (*others, ego), key=_drawn_area_m2, reverse=True
             )  # small actors are drawn over large actors
-            if a is ego or a in met or view.has_actor(a, _ROOM_BESIDE_VIEW_SHARE)
+            if a is ego or a in met or view.has_actor(a, _ACTORS_KEPT_BESIDE_VIEW_SHARE)
         ],
         "gaps": gaps,
         "texts": texts,
