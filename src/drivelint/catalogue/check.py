@@ -17,7 +17,15 @@ from drivelint.catalogue import allowed_sql
 from drivelint.catalogue.allowed_sql import ENGINE_TABLES
 from drivelint.errors import RuleError
 from drivelint.phrases import nearest_word
-from drivelint.sql.syntax import union_queries, column_name, byte_offset_of, parser, syntax_tree, tables_needing_rows, walk
+from drivelint.sql.syntax import (
+    byte_offset_of,
+    column_name,
+    parser,
+    syntax_tree,
+    tables_needing_rows,
+    union_queries,
+    walk,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
