@@ -16,7 +16,7 @@ from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
 from drivelint.result.model import decision_counts, exit_status, gating_findings, is_too_little_decided
-from drivelint.result.text import number, subject
+from drivelint.result.text import ego_and_object_names, number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -100,7 +100,7 @@ class Event(NamedTuple):
     def other_rows_words(self) -> str:
         """The other rows in words, such as "also under the profile observed, margin -3.00 m"; '' if there are none."""
         return "; ".join(
-            f"also found for {subject(row)}"
+            f"also found for {ego_and_object_names(row)}"
             if row["ego_id"] != self.finding["ego_id"]
             else f"also under the profile {row['profile']}"
             + ("" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}")
@@ -190,7 +190,7 @@ def one_finding_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> 
 
 
 def events_by_status(gate: Gate | None, rows: Sequence[Row]) -> list[Event]:
-    """Return the events with the findings of `one_per_event_and_status`, in the order of these findings."""
+    """Return the events with the findings of `one_finding_per_event_and_status`, in the order of these findings."""
     of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
     members: dict[int, list[Row]] = {}
     for mine in of_standing.values():
