@@ -27,7 +27,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import store
-from drivelint.sql.derivations import NEEDED_OF_RULES_ABOUT_OTHERS, derivations, needed_derivations
+from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, derivations, needed_derivations
 from tests.formats.opendrive import xodr
 from tests.together import Question, SceneTables, answers
 
@@ -344,13 +344,13 @@ def derived(
     con, bench, _ = place
     wanted = set(tables) or set(derivations())
     # what the engine always needs besides is not asked for here, and would take most of the time
-    with patch("drivelint.sql.derivations.NEEDED_OF_RULES_ABOUT_OTHERS", ()):
+    with patch("drivelint.sql.derivations.TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS", ()):
         of_the_map = {d.table for d in needed_derivations(wanted) if d.is_of_map_only}
         if not of_the_map <= bench._tables:
             bench._tables |= of_the_map
             bench._maps = frozenset()  # all of the map once more, with these
         bench._tables |= wanted  # or they would keep the rows of the scene before
-        bench._also = NEEDED_OF_RULES_ABOUT_OTHERS
+        bench._also = TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS
         bench._load_drives(drives)
         derive(con, wanted, are_map_tables=False)
     return con

@@ -172,7 +172,7 @@ def test_an_annotation_that_fails_voids_no_verdict(tmp_path: Path, good: Path, m
 
 
 def test_what_was_declared_before_a_loss_is_not_known_after_it() -> None:
-    with store.workspace(None) as con:
+    with store.temporary_database(None) as con:
         fill(con)
         derive(con, {"ego_mode", "signal_phase"}, are_map_tables=False)
         modes = con.execute("SELECT t_ns, is_on FROM ego_mode ORDER BY t_ns").fetchall()
@@ -200,4 +200,4 @@ def fill(con: duckdb.DuckDBPyConnection) -> None:
     }
     for name, content in rows.items():
         empty = dict.fromkeys(store.arrow_schemas()[name].names)
-        store.insert(con, name, store.owned_table(name, "d", [empty | row for row in content], "test"))
+        store.insert(con, name, store.table_with_owner_id(name, "d", [empty | row for row in content], "test"))

@@ -277,7 +277,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
         store.lock_down(con)
         with pytest.raises(duckdb.OutOfMemoryException):
             con.execute(large)
-        store.lift_memory_limit(con)
+        store.set_and_return_default_memory_limit(con)
         con.execute(large)
 
 
@@ -311,7 +311,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
 @pytest.mark.parametrize("lifted", [False, True])
 def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool) -> None:
     held = "SELECT sum(memory_usage_bytes) FROM duckdb_memory()"
-    with store.workspace(200_000_000) as con:
+    with store.temporary_database(200_000_000) as con:
         memory = MemoryLimit(con, 200_000_000)
         if lifted:
             memory.raise_to_machine_limit()
@@ -328,7 +328,7 @@ def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool
 def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """DuckDB's own choice is a folder where the user is."""
     monkeypatch.chdir(tmp_path)
-    with store.workspace(LEAST_MEMORY_BYTES) as con:
+    with store.temporary_database(LEAST_MEMORY_BYTES) as con:
         store.lock_down(con)
         ((spill,),) = con.execute("SELECT current_setting('temp_directory')").fetchall()
         con.execute("CREATE TABLE large AS SELECT i, hash(i) AS h FROM range(10_000_000) r(i)")

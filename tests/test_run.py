@@ -87,7 +87,7 @@ def test_tracks_are_the_same_wherever_the_egos_are_cut(
     found = []
     for room in (batch.EGO_ACTOR_PAIRS_PER_PART, 1):
         monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
-        monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
+        monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", room)
         found.append(check(settings(ragged, ego="all", rules=FEW, out=tmp_path / str(room)), Silent()).tracks)
     assert found[0].num_rows == 4
     assert found[0].equals(found[1])
@@ -99,7 +99,7 @@ def test_where_the_egos_are_cut_does_not_show(ragged: Path, tmp_path: Path, monk
     found = []
     for room in (batch.EGO_ACTOR_PAIRS_PER_PART, 1, 1100):
         monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
-        monkeypatch.setattr(evidence, "SCENES_AT_ONCE", room)
+        monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", room)
         out = tmp_path / str(room)
         asked = settings(ragged, ego="all", out=out, keep_db=True, margins=True, rules=("all",))
         result = check(asked, Silent())

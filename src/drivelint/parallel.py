@@ -28,7 +28,7 @@ from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_names_sizes_and_change_times
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
-from drivelint.report.log_notes import LogNotes, same_log_note
+from drivelint.report.log_notes import LogNotes, note_on_repeated_log
 from drivelint.report.progress import Progress
 from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 
@@ -185,7 +185,7 @@ def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
         for name, table in tables.items()
         if "drive_id" in table.column_names
     }
-    told = [same_log_note(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    told = [note_on_repeated_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
     kept = [note for note in part.notes if note.path not in {each.path for each in told}]
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 

@@ -28,7 +28,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.pictures import PictureTaker, planned_shots, rows_of_planned_shots
-from drivelint.report.log_notes import LogNote, LogNotes, notes_without_repeats, same_log_note
+from drivelint.report.log_notes import LogNote, LogNotes, note_on_repeated_log, notes_without_repeats
 from drivelint.report.rule_progress import ReportingRuleLimits
 from drivelint.result import collect, evidence
 from drivelint.result.counts import group_rows, one_finding_per_event, severity_counts_text
@@ -167,7 +167,7 @@ def judge_logs(
     """
     interruption = interruption or Interruption()
     rules, required, params, profiles = run_rules
-    with store.workspace(settings.memory, threads=settings.threads) as con:
+    with store.temporary_database(settings.memory, threads=settings.threads) as con:
         memory = MemoryLimit(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
@@ -363,7 +363,7 @@ def _judge_batch(
         if isinstance(item, RefusedLog):
             refused_logs.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
-            notes.add(same_log_note(item.trace.path, item.trace.drive_id))
+            notes.add(note_on_repeated_log(item.trace.path, item.trace.drive_id))
         else:
             drives.append(item)
             for text in item.trace.notes:

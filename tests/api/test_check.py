@@ -466,7 +466,7 @@ import drivelint, drivelint.run
 from drivelint.sql import store
 
 def long_query(*_, **__):
-    with store.workspace(None) as con:
+    with store.temporary_database(None) as con:
         print("computing", flush=True)
         con.execute("SELECT sum(hash(range)) FROM range(1000000000000)")
 

@@ -10,7 +10,7 @@ import pytest
 from shapely import affinity
 from shapely.geometry import LineString, Point, box
 
-from drivelint.sql.store import owned_table
+from drivelint.sql.store import table_with_owner_id
 from tests import blinding
 from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 
@@ -68,7 +68,7 @@ def test_what_says_the_limit_or_that_there_is_none() -> None:
         way.environment,
         tables={
             **way.environment.tables,
-            "speed_limit": owned_table("speed_limit", way.environment.environment_id, limits, "test"),
+            "speed_limit": table_with_owner_id("speed_limit", way.environment.environment_id, limits, "test"),
         },
     )
     t = times(7.0)

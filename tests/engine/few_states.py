@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from drivelint.drive.trace import Trace
-from drivelint.sql.store import owned_table
+from drivelint.sql.store import table_with_owner_id
 
 
 def states(x: float) -> pa.Table:
@@ -26,5 +26,5 @@ def log_of(
     rows: pa.Table, path: Path = Path("logs/drive.mcap"), *, embedded: bytes | None = None, reference: str | None = None
 ) -> Trace:
     """Return a drive of these states only."""
-    tables = {"drive_condition": owned_table("drive_condition", "drive", [], "few"), "actor_state": rows}
+    tables = {"drive_condition": table_with_owner_id("drive_condition", "drive", [], "few"), "actor_state": rows}
     return Trace("drive", path, tables, embedded, None, [], geo_reference=reference)

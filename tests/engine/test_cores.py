@@ -31,7 +31,7 @@ def test_few_states_are_judged_on_one_core(monkeypatch: pytest.MonkeyPatch) -> N
     for most, expected in ((drive.n_states, 1), (drive.n_states - 1, CORES)):
         monkeypatch.setattr(batch, "MOST_STATES_ON_ONE_CORE", most)
         seen: list[int] = []
-        with store.workspace(None, threads=CORES) as con:
+        with store.temporary_database(None, threads=CORES) as con:
             look = [lambda con, _drives, seen=seen, **_part: seen.append(cores(con))]
             JudgingSession(con, (), {}, None, observers=look).judge([drive])
             assert (seen, cores(con)) == ([expected], CORES)
@@ -43,7 +43,7 @@ def test_a_batch_that_fails_gives_the_cores_back() -> None:
     def fail(*_: object, **_part: bool) -> None:
         raise ValueError("no observer")
 
-    with store.workspace(None, threads=CORES) as con:
+    with store.temporary_database(None, threads=CORES) as con:
         with pytest.raises(ValueError, match="no observer"):
             JudgingSession(con, (), {}, None, observers=[fail]).judge([drive])
         assert cores(con) == CORES

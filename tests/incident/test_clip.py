@@ -26,7 +26,7 @@ from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions
 from drivelint.run import check as run_check
-from drivelint.sql.store import owned_table
+from drivelint.sql.store import table_with_owner_id
 from tests.explain.checked import OVERTAKE
 from tests.shared_data import shared
 
@@ -143,8 +143,8 @@ def test_what_holds_at_the_start_stays() -> None:
         "state": ["green", "red", "green", "red"],
     }
     events = {"t_ns": [0, 10**8], "actor_id": ["ego"] * 2, "event": ["engaged"] * 2, "value": ["off", "on"]}
-    trace.tables["signal_state"] = owned_table("signal_state", trace.drive_id, signals, "test")
-    trace.tables["declared_event"] = owned_table("declared_event", trace.drive_id, events, "test")
+    trace.tables["signal_state"] = table_with_owner_id("signal_state", trace.drive_id, signals, "test")
+    trace.tables["declared_event"] = table_with_owner_id("declared_event", trace.drive_id, events, "test")
     log = trace.tables["data_log"]
     at = log.schema.get_field_index("utc_start_ns")
     trace.tables["data_log"] = log.set_column(at, log.schema.field(at), pa.array([10**18], pa.int64()))

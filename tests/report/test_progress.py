@@ -34,7 +34,7 @@ def test_a_step_that_takes_long_is_told_and_what_was_done_before_says_nothing_of
 ) -> None:
     now_s = 0.0
     monkeypatch.setattr("drivelint.report.progress.time.monotonic", lambda: now_s)
-    monkeypatch.setattr("drivelint.report.progress._CHECK_PERIOD_S", 0.001)
+    monkeypatch.setattr("drivelint.report.progress._PRINT_DUE_CHECK_PERIOD_S", 0.001)
     with note_printer() as listener:
         listener.stage("checking", 10)
         listener.advance(8)

@@ -247,7 +247,7 @@ def test_the_tables_can_be_read_by_column(result: Result) -> None:
 
 @pytest.mark.parametrize("most", [1, 5, 7, 100])
 def test_moments_are_cut_between_egos(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(evidence, "SCENES_AT_ONCE", most)
+    monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", most)
     counts = [(1, 3), (2, 2), (3, 9), (4, 1), (5, 1)]
     runs = list(evidence._groups_of_egos(counts))
     assert [ego for first, end in runs for ego in range(first, end)] == [1, 2, 3, 4, 5]

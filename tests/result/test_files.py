@@ -82,7 +82,7 @@ def test_a_full_disk_leaves_the_earlier_results_whole(tmp_path: Path, monkeypatc
         if len(synced) == 2:
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(publishing, "_sync", disk_full_at_the_second)
+    monkeypatch.setattr(publishing, "_sync_to_disk", disk_full_at_the_second)
     with pytest.raises(OutputError, match="No space left"):
         publish(tmp_path, {"one": b"new", "two": b"new"}, {})
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"one": b"old", "two": b"old"}

@@ -98,8 +98,8 @@ def test_an_earlier_result_is_whole_elsewhere_after_a_run_that_ends_early(tmp_pa
     (tmp_path / "notes.txt").write_text("mine")
     before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path) - REPORTS - {"notes.txt"}}
     interrupted(tmp_path)
-    assert names(tmp_path) == {"notes.txt", *(f"{folder.EARLIER_FOLDER}/{name}" for name in before)}
-    earlier = tmp_path / folder.EARLIER_FOLDER
+    assert names(tmp_path) == {"notes.txt", *(f"{folder.EARLIER_RESULT_FOLDER}/{name}" for name in before)}
+    earlier = tmp_path / folder.EARLIER_RESULT_FOLDER
     assert {name: (earlier / name).read_bytes() for name in names(earlier)} == before
     assert load_result(earlier).drives["drive_id"].to_pylist() == ["a"]
     interrupted(tmp_path)  # once more: the last result stays
@@ -109,8 +109,8 @@ def test_an_earlier_result_is_whole_elsewhere_after_a_run_that_ends_early(tmp_pa
     assert load_result(earlier).drives["drive_id"].to_pylist() == ["b"]
     (earlier / "notes.txt").write_text("mine")
     checked(tmp_path, "c")
-    assert {name for name in names(tmp_path) if name.startswith(folder.EARLIER_FOLDER)} == {
-        f"{folder.EARLIER_FOLDER}/notes.txt"
+    assert {name for name in names(tmp_path) if name.startswith(folder.EARLIER_RESULT_FOLDER)} == {
+        f"{folder.EARLIER_RESULT_FOLDER}/notes.txt"
     }
 
 
@@ -120,7 +120,7 @@ def test_a_result_that_the_failed_run_wrote_itself_stays(tmp_path: Path) -> None
         write(result([verdict("pass", drive_id="b")], drives=[drive("b")]), tmp_path, work)
         raise TraceError("no drive could be judged")
     assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["b"]
-    assert not (tmp_path / folder.EARLIER_FOLDER).exists()
+    assert not (tmp_path / folder.EARLIER_RESULT_FOLDER).exists()
 
 
 def test_what_a_killed_run_left_goes_with_the_next(tmp_path: Path) -> None:

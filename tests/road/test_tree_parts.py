@@ -41,7 +41,7 @@ def test_no_call_gives_far_more_pairs_than_a_part_may_have(monkeypatch: pytest.M
     same = [shapely.box(0, 0, 1, 1)] * 500
     sizes = [len(first) for first, _ in query_in_parts(shapely.STRtree(same), same, "intersects")]
     assert sum(sizes) == 500 * 500
-    assert max(sizes) <= tree_parts.FIRST_PART_SHAPES * 500
+    assert max(sizes) <= tree_parts.SHAPES_IN_FIRST_PART * 500
 
 
 def test_a_crowded_place_is_told_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:

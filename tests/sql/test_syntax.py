@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store, syntax
-from drivelint.sql.derivations import Derivation, _reads_needs_occasion, derivations
+from drivelint.sql.derivations import Derivation, _tables_read_tables_needed_and_occasion, derivations
 
 TABLES = ("a", "b", "c")
 NEEDS = {
@@ -130,8 +130,8 @@ def test_the_occasion_of_a_derivation_is_a_query(step: Derivation) -> None:
 def test_an_occasion_that_does_not_hold_is_refused() -> None:
     sql = "WITH p AS (FROM a),\n-- occasion: p\nq AS (FROM b)\nFROM q LEFT JOIN p USING (x)"
     with pytest.raises(DriveLintError, match=r"^here\.sql: without rows in p there may be rows"):
-        _reads_needs_occasion(sql, "here.sql")
-    reads, needs, occasion = _reads_needs_occasion(sql.replace("LEFT JOIN", "JOIN"), "here.sql")
+        _tables_read_tables_needed_and_occasion(sql, "here.sql")
+    reads, needs, occasion = _tables_read_tables_needed_and_occasion(sql.replace("LEFT JOIN", "JOIN"), "here.sql")
     assert reads == needs == {"a", "b"}
     assert occasion == "WITH p AS (FROM a) SELECT 1 FROM p LIMIT 1"
 

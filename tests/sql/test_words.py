@@ -219,5 +219,5 @@ def test_a_readers_rows_are_held_against_the_vocabularies() -> None:
     with pytest.raises(
         InternalError, match=r"^reader osi-mcap: table actor, column actor_class: 'cyclist' .*'bicycle'"
     ):
-        store.owned_table("actor", "d", [row], "osi-mcap")
-    assert store.owned_table("actor", "d", [row | {"actor_class": "bicycle"}], "osi-mcap").num_rows == 1
+        store.table_with_owner_id("actor", "d", [row], "osi-mcap")
+    assert store.table_with_owner_id("actor", "d", [row | {"actor_class": "bicycle"}], "osi-mcap").num_rows == 1

@@ -70,7 +70,7 @@ def windows_of(options: WatchOptions, folder: Path) -> list[Made]:
         while window.advance(every_ns):
             ingest = options.ingest_options()
             latest = source.latest_trace(
-                window.frames_since(frames[0].t_ns - contact.LEAST_EXAMINED_NS), folder, ingest
+                window.frames_since(frames[0].t_ns - contact.LEAST_EXAMINED_LOG_SPAN_NS), folder, ingest
             )
             found.append(Made(source.window_reader(window.frames, folder, ingest)(), window.is_whole, latest))
     return found
@@ -91,7 +91,7 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> WatchOut
         until: int | None = None
         for each, (trace, is_whole, latest) in zip(judged, made, strict=True):
             if contacts is not None and until is not None and egos == egos_of(latest):
-                alarms.add_contacts(
+                alarms.add_contacts_and_return_new_alarms(
                     contacts.new_contacts(latest, until), latest.tables["data_log"]["t_end_ns"][0].as_py()
                 )
             if isinstance(each, JudgedWindow):

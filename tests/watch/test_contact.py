@@ -41,7 +41,7 @@ SCENES = Path(__file__).parents[2] / "fixtures" / "scenes"
 
 @pytest.fixture(scope="module")
 def con() -> Iterator[duckdb.DuckDBPyConnection]:
-    with store.workspace(None) as con:
+    with store.temporary_database(None) as con:
         yield con
 
 
@@ -218,13 +218,13 @@ def window(t_end_s: float, findings: list[dict[str, Any]]) -> JudgedWindow:
 def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactFinder) -> None:
     rows = look.new_contacts(trace(ego(), standing("car", WAY, T, 110.0, WAY.own)), None)
     log = AlarmLog({OVERLAP_RULE: 2 * NS_PER_S}, ())
-    (alarm,) = log.add_contacts(rows, 10 * NS_PER_S)
+    (alarm,) = log.add_contacts_and_return_new_alarms(rows, 10 * NS_PER_S)
     assert (alarm.is_early, alarm.row["t_start_ns"], alarm.t_end_ns) == (
         True,
         rows[0]["t_start_ns"],
         rows[-1]["t_end_ns"],
     )
-    assert log.add_contacts(rows, 10 * NS_PER_S) == []
+    assert log.add_contacts_and_return_new_alarms(rows, 10 * NS_PER_S) == []
     before = log.add_window(window(rows[0]["t_start_ns"] / NS_PER_S - 0.1, []), None, None)
     assert (before.new, before.withdrawn) == ([], [])
     seen = log.add_window(window(10.0, [{"rule_id": OVERLAP_RULE, **rows[0]}]), None, None)

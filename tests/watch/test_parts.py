@@ -51,7 +51,7 @@ def is_running(pid: int) -> bool:
 def test_a_child_that_does_not_want_to_end_is_killed_with_all_that_it_started(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("drivelint.watch.halting.GRACE_S", 0.5)
+    monkeypatch.setattr("drivelint.watch.halting.GRACE_BEFORE_KILL_S", 0.5)
     script = tmp_path / "stubborn.py"
     script.write_text(
         "import os, signal, sys, time\n"
@@ -90,33 +90,33 @@ def test_a_program_that_is_not_there() -> None:
 def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     for _ in range(5):
-        assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
-    assert trigger.run_for_alarms([{"rule_id": "another"}]) is None
+        assert trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) is None
+    assert trigger.run_for_alarms_and_return_note([{"rule_id": "another"}]) is None
     assert (trigger.n_run, trigger.n_left_out) == (1, 4)
     trigger.wait_for_running_commands()
 
 
 def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
-    told = [trigger.run_for_alarms([{"rule_id": RULE}] * 2) for _ in range(3)]
-    trigger._last_s -= triggers.LEAST_PAUSE_S
-    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.note_on_left_out_alarms()]
+    told = [trigger.run_for_alarms_and_return_note([{"rule_id": RULE}] * 2) for _ in range(3)]
+    trigger._last_s -= triggers.LEAST_PAUSE_BETWEEN_STARTS_S
+    told += [trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]), trigger.note_on_left_out_alarms()]
     assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
-    trigger.run_for_alarms([{"rule_id": RULE}])
+    trigger.run_for_alarms_and_return_note([{"rule_id": RULE}])
     assert trigger.note_on_left_out_alarms() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
     trigger.wait_for_running_commands()
 
 
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
-    assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
+    assert trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) is None
     trigger.wait_for_running_commands()
     assert not (tmp_path / "b").exists()
 
 
 def test_a_command_that_is_not_there_is_told() -> None:
     (trigger,) = triggers.parse([f"{RULE}=no-such-program"], KNOWN, KNOWN)
-    assert "no-such-program: cannot be started" in (trigger.run_for_alarms([{"rule_id": RULE}]) or "")
+    assert "no-such-program: cannot be started" in (trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) or "")
 
 
 @pytest.mark.parametrize("text", ["true", "=true", f"{RULE}=", f"{RULE}='"])

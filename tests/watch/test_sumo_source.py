@@ -240,7 +240,7 @@ def test_nothing_of_sumo_is_left_behind(scenario: Path, tmp_path: Path, number: 
 
 @pytest.fixture
 def quick_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sumo_process, "GRACE_S", 1.0)
+    monkeypatch.setattr(sumo_process, "GRACE_BEFORE_KILL_S", 1.0)
 
 
 @pytest.mark.usefixtures("quick_end")

@@ -286,7 +286,7 @@ def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the
     asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False, on=on)
     with Watch(asked, Broken(), told.append, Interruption()) as watch:
         for _ in range(2):
-            watch._triggers[0].run_for_alarms([{"rule_id": "ukhc.no-collision"}])
+            watch._triggers[0].run_for_alarms_and_return_note([{"rule_id": "ukhc.no-collision"}])
         watched = watch.watch()
         checked: dict[str, Any] = {"folder": tmp_path, "progress": Silent(), "interruption": Interruption()}
         result = check_recording(asked, LOG, None, watch, **checked)

@@ -17,7 +17,7 @@ from drivelint.report.worst_first import when
 from drivelint.result import counts
 from drivelint.result.certainty import certainty
 from drivelint.result.model import exit_status
-from drivelint.result.text import measure, measured_values_text, rule_name, subject
+from drivelint.result.text import ego_and_object_names, measure, measured_values_text, rule_name
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -56,7 +56,7 @@ def summary_html(result: Result) -> str:
             "certainty": certainty(row),
             "rule": rule_name(row),
             "title": rules[row["rule_id"]]["title"],
-            "who": subject(row),
+            "who": ego_and_object_names(row),
             "measured": measured_values_text(row),
             "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),
         }

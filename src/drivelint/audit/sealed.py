@@ -22,7 +22,7 @@ from drivelint.audit.driver import empty_tables
 from drivelint.audit.unpacked import RUNNING_AUDIT_MESSAGE, SUMMARY_FILE
 from drivelint.audit.worker import TABLES, batch_name, rows_sha256
 from drivelint.errors import UsageError
-from drivelint.result.folder import hashes_in, manifest_bytes
+from drivelint.result.folder import hashes_in_manifest, manifest_bytes
 from drivelint.result.names import MANIFEST
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def require_listed_files_unchanged_and_return_has_list(results: ResultStore, dow
     copies.
     Errors: also `OutputError`.
     """
-    said = hashes_in(results.read(MANIFEST) or b"")
+    said = hashes_in_manifest(results.read(MANIFEST) or b"")
     if not said:
         return False
     for name in sorted({*results.names(_TABLES_FOLDER), *said}):
@@ -86,7 +86,7 @@ def require_audit_unchanged(results: ResultStore, downloads: Path, dest: str) ->
 
 def require_file_list(results: ResultStore, dest: str) -> None:
     """Raise `UsageError` if an audit has ended but has no readable list of its files. Errors: also `OutputError`."""
-    if not hashes_in(results.read(MANIFEST) or b"") and _has_ended(results):
+    if not hashes_in_manifest(results.read(MANIFEST) or b"") and _has_ended(results):
         raise UsageError(
             f"{dest}: has ended, and {MANIFEST}, the list of its files, is missing or not readable: "
             "give the same audit again, which holds all rows against their receipts"

@@ -54,7 +54,7 @@ class Judge:
     def __init__(self, settings: JudgeSettings) -> None:
         self._stack = ExitStack()
         memory = DEFAULT_MEMORY_BYTES if settings.memory is None else settings.memory
-        self._con = self._stack.enter_context(store.workspace(memory))
+        self._con = self._stack.enter_context(store.temporary_database(memory))
         self._con.execute("SET threads=1")
         rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)

@@ -17,7 +17,15 @@ from drivelint.catalogue import allowed_sql
 from drivelint.catalogue.allowed_sql import ENGINE_TABLES
 from drivelint.errors import RuleError
 from drivelint.phrases import nearest_word
-from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
+from drivelint.sql.syntax import (
+    byte_offset_of,
+    column_name,
+    parser,
+    syntax_tree,
+    tables_needing_rows,
+    union_queries,
+    walk,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -238,7 +246,7 @@ class _SyntaxCollector:
                 part, f"{name}() without ORDER BY returns a different row every time: add ORDER BY, or write max(...)"
             )
         if name == "why":
-            place = self._text.place_at(offset_of(part))
+            place = self._text.place_at(byte_offset_of(part))
             code, *rest = part["children"]
             arguments = _struct_fields(rest[0]) if rest else frozenset[str]()
             self.reasons += [GivenReason(each, arguments, place) for each in _possible_texts(code)]
@@ -272,7 +280,7 @@ class _SyntaxCollector:
             )
 
     def _add_refusal(self, part: Node, message: str) -> None:
-        self.refusals.append(f"{self._text.place_at(offset_of(part))}: {message}")
+        self.refusals.append(f"{self._text.place_at(byte_offset_of(part))}: {message}")
 
 
 def _has_order_by(part: Node) -> bool:
@@ -314,14 +322,14 @@ def _is_union_by_name(node: Node) -> bool:
     while node["type"] == "SET_OPERATION_NODE":
         if node["setop_type"] == "UNION_BY_NAME":
             return True
-        node = branches(node)[0]
+        node = union_queries(node)[0]
     return False
 
 
 def _result_columns(node: Node) -> tuple[str, ...] | None:
     """Return the column names of a SELECT, or of the first branch of a UNION; None if a column has no name or is a `*`."""
     while node["type"] == "SET_OPERATION_NODE":
-        node = branches(node)[0]
+        node = union_queries(node)[0]
     if node["type"] != "SELECT_NODE":
         return None
     names = tuple("" if item["class"] == "STAR" else column_name(item) for item in node["select_list"])
@@ -331,9 +339,9 @@ def _result_columns(node: Node) -> tuple[str, ...] | None:
 def _places_of_columns(text: _SqlText, node: Node) -> dict[str, str]:
     """Return `AS column` -> `file:line` of the column's name, for a SELECT or the first branch of a UNION."""
     while node["type"] == "SET_OPERATION_NODE":
-        node = branches(node)[0]
+        node = union_queries(node)[0]
     items, content = node.get("select_list", []), text.sql.encode()
-    offsets = [offset_of(item) or 0 for item in items]
+    offsets = [byte_offset_of(item) or 0 for item in items]
     found: dict[str, str] = {}
     for item, start, end in zip(items, offsets, [*offsets[1:], len(content)], strict=True):
         name = column_name(item)

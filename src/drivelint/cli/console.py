@@ -62,18 +62,18 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
 @contextmanager
 def say_earlier_folder_on_failure(out: Path | None) -> Iterator[None]:
     """Print where the earlier result is, if the run inside the block ends without a result."""
-    from drivelint.result.folder import EARLIER_FOLDER
+    from drivelint.result.folder import EARLIER_RESULT_FOLDER
 
     try:
         yield
     except (DriveLintError, KeyboardInterrupt):
         if (
             out is not None
-            and (out / EARLIER_FOLDER / "summary.json").is_file()
+            and (out / EARLIER_RESULT_FOLDER / "summary.json").is_file()
             and not (out / "summary.json").is_file()
         ):
             typer.echo(
-                f"drivelint: the result of an earlier run is now in {terminal_safe_line(str(out / EARLIER_FOLDER))}",
+                f"drivelint: the result of an earlier run is now in {terminal_safe_line(str(out / EARLIER_RESULT_FOLDER))}",
                 err=True,
             )
         raise

@@ -35,7 +35,9 @@ _CHECK_OPTIONS_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "tod
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
 _INPUT_FILES_NAMED_BY_NO_OPTION: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
-_SUBFOLDERS_OF_OUTPUTS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
+_SUBFOLDERS_OF_OUTPUTS: Final = frozenset(
+    {"annotated", folder.EARLIER_RESULT_FOLDER, f"{folder.EARLIER_RESULT_FOLDER}/annotated"}
+)
 _REPEATED_RESULT_NOTE: Final = (
     "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
 )
@@ -55,7 +57,7 @@ class OutputPathTest:
         if name in _SUBFOLDERS_OF_OUTPUTS:
             with suppress(OSError):
                 return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
-        name = name.removeprefix(f"{folder.EARLIER_FOLDER}/")
+        name = name.removeprefix(f"{folder.EARLIER_RESULT_FOLDER}/")
         return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILE_GLOBS)
 
 

@@ -212,7 +212,7 @@ def _watch_and_check(
     from drivelint.report.outputs import write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages
-    from drivelint.watch.ending import check_recording, report_outcome
+    from drivelint.watch.ending import check_recording, report_outcome_and_return_counts_text
     from drivelint.watch.judge import WindowJudge
     from drivelint.watch.run import Watch
     from drivelint.watch.server import open_server
@@ -244,7 +244,7 @@ def _watch_and_check(
         )
         if interruption.of_check.requested and not result.interrupted:
             emit(messages.note("interrupted: the test of how sure the findings are was not finished"))
-        told = report_outcome(result, watch, emit)
+        told = report_outcome_and_return_counts_text(result, watch, emit)
         if settings.out is not None:
             write(result, settings.out, work, overwrite=overwrite)
         progress.note(told)

@@ -36,7 +36,7 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.phrases import name_list
-from drivelint.sql.store import arrow_schemas, owned_table
+from drivelint.sql.store import arrow_schemas, table_with_owner_id
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -184,7 +184,9 @@ def _trace_tables(
             for name, value in sorted({**recording.conditions, **user_conditions}.items())
         ],
     }
-    return {name: owned_table(name, identity.drive_id, rows, recording.format) for name, rows in content.items()}
+    return {
+        name: table_with_owner_id(name, identity.drive_id, rows, recording.format) for name, rows in content.items()
+    }
 
 
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
@@ -201,9 +203,9 @@ def with_drive_condition_from_map(trace: Trace, condition: str, word: str | None
     if word is None or condition in rows["condition"].to_pylist():
         return trace
     row = {"condition": condition, "value": word, "source": "map"}
-    rows = pa.concat_tables([rows, owned_table("drive_condition", trace.drive_id, [row], "of the map")]).sort_by(
-        "condition"
-    )
+    rows = pa.concat_tables(
+        [rows, table_with_owner_id("drive_condition", trace.drive_id, [row], "of the map")]
+    ).sort_by("condition")
     return replace(trace, tables={**trace.tables, "drive_condition": rows})
 
 
@@ -288,13 +290,15 @@ def _quality_table(drive_id: str, findings: list[QualityFinding], reader: str) -
     # a converted log contains findings of the first reading, which the checks may find again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
-    return owned_table("quality", drive_id, [{name: getattr(row, name) for name in names} for row in rows], reader)
+    return table_with_owner_id(
+        "quality", drive_id, [{name: getattr(row, name) for name in names} for row in rows], reader
+    )
 
 
 def _doubt_table(drive_id: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     rows = sorted({(*doubt, finding.check_id) for finding in findings for doubt in finding.doubts})
     names = (*Doubt._fields, "code")
-    return owned_table("doubt", drive_id, [dict(zip(names, row, strict=True)) for row in rows], reader)
+    return table_with_owner_id("doubt", drive_id, [dict(zip(names, row, strict=True)) for row in rows], reader)
 
 
 def _array_with_nulls(values: Floats) -> pa.Array:

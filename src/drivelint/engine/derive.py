@@ -13,7 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
-from drivelint.sql.derivations import NEEDED_OF_RULES_ABOUT_OTHERS, needed_derivations
+from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, needed_derivations
 from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def derive(
     tables: Iterable[str],
     *,
     are_map_tables: bool,
-    always_needed_tables: Iterable[str] = NEEDED_OF_RULES_ABOUT_OTHERS,
+    always_needed_tables: Iterable[str] = TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS,
     filled_tables: Collection[str] = (),
 ) -> None:
     """Fill the library tables that `tables` depend on.

@@ -53,7 +53,7 @@ class MemoryLimit:
         if not self.limited or self._limit is None:
             return False
         self.limited = False
-        given = store.lift_memory_limit(self._con)
+        given = store.set_and_return_default_memory_limit(self._con)
         self._note(
             f"{format_bytes(self._limit)} of memory are not enough (--memory): the database may use up to {given}"
         )
@@ -62,12 +62,12 @@ class MemoryLimit:
     def release_unused_memory(self) -> None:
         """Return unused memory to the system, without changing the limits. Call it between statements."""
         try:
-            store.release_memory(self._con)
+            store.release_memory_and_leave_limit_of_1_byte(self._con)
         finally:  # an interrupt must not leave the database without memory
             if self.limited:
                 self._con.execute("SET memory_limit=?", [f"{self._limit}B"])
             else:
-                store.lift_memory_limit(self._con)
+                store.set_and_return_default_memory_limit(self._con)
 
     def most_growth_bytes(self) -> int | None:
         """Return by how many bytes the process may grow while a rule runs.

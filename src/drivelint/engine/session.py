@@ -23,9 +23,9 @@ from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.sql import store
 from drivelint.sql.derivations import (
-    NEEDED_OF_DRIVES,
-    NEEDED_OF_RULES,
-    NEEDED_OF_RULES_ABOUT_OTHERS,
+    TABLES_NEEDED_FOR_DRIVES,
+    TABLES_NEEDED_FOR_RULES,
+    TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS,
     derived_tables,
     needed_derivations,
 )
@@ -80,10 +80,12 @@ class JudgingSession:
         self._params = params
         self._observers = observers
         self._tables = {table for rule in rules for table in rule.reads}
-        self._also: tuple[str, ...] = NEEDED_OF_DRIVES
+        self._also: tuple[str, ...] = TABLES_NEEDED_FOR_DRIVES
         if rules:
             self._also = (
-                NEEDED_OF_RULES_ABOUT_OTHERS if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
+                TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS
+                if any(rule.looks_at_others for rule in rules)
+                else TABLES_NEEDED_FOR_RULES
             )
         self._memory = memory or MemoryLimit(con, None)
         self._interruption = interruption or Interruption()

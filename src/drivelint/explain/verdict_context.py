@@ -44,7 +44,7 @@ class VerdictContext:
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a sandbox: a database with these drives and the derived tables that the rule needs."""
-        with store.workspace(self.memory, threads=1 if have_few_states(drives) else None) as con:
+        with store.temporary_database(self.memory, threads=1 if have_few_states(drives) else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:

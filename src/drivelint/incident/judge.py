@@ -72,7 +72,7 @@ class Judge:
             values = {"ego_id": ego_id, "object_id": object_id}
             steps.append(con.execute(statement("incident/step"), values).to_arrow_table())
 
-        with store.workspace(self.memory) as con:
+        with store.temporary_database(self.memory) as con:
             store.insert(con, "profile", self.profiles)
             memory = MemoryLimit(con, self.memory)
             session = JudgingSession(

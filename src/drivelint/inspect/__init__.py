@@ -152,7 +152,7 @@ def _egos_and_quality(
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
     known = _KnownConditions()
-    with store.workspace(memory) as con:
+    with store.temporary_database(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=MemoryLimit(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _query_rows(con, f"FROM {table}") for table in ("capability", "exposure")}

@@ -134,7 +134,7 @@ def _evidence_of_drive(
             rows = [row for row in findings if row["rule_id"] == rule.id]
             found.update(_evidence_of_rule(con, rule, params[rule.id], rows))
 
-    with store.workspace(memory) as con:
+    with store.temporary_database(memory) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
         session = JudgingSession(con, mine, params, None, observers=[gather_evidence], memory=MemoryLimit(con, memory))
         session.judge([drive])

@@ -85,7 +85,7 @@ def _map_note(drives: Sequence[Row]) -> InputNote:
     reasons = [reason for drive in on_map if (reason := map_misfit_reason(drive)) is not None]
     n = plural(len(on_map), "drive")
     words = f"{name_list(sorted({drive['map_name'] for drive in on_map}), _MAX_LISTED_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
-    off_egos, egos = sum(map(_n_egos_off_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
+    off_egos, egos = sum(map(_n_egos_with_map_misfit, on_map)), sum(len(drive["exposure"]) for drive in on_map)
     if reasons:
         words += f" ({reasons[0]})"
     elif off_egos:
@@ -111,7 +111,7 @@ def _far_from_lane_middle_words(messages: Sequence[str], egos: int) -> str:
     return messages[0] if len(messages) == 1 else far
 
 
-def _n_egos_off_map(drive: Row) -> int:
+def _n_egos_with_map_misfit(drive: Row) -> int:
     egos = {ego["ego_id"] for ego in drive["exposure"]}
     return len(egos & {gap["ego_id"] for gap in drive["not_judged"] if gap["reason_code"] in MAP_MISFIT_CODES})
 
@@ -141,7 +141,7 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
         parts.append(
             f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)}){_first_place_words(warned)}"
         )
-    parts += (copied := _words_on_copies(drives))
+    parts += (copied := _words_on_identical_logs(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
 
 
@@ -161,7 +161,7 @@ def _completeness_words(drives: Sequence[Row]) -> str:
     return f"complete, as far as the format {name_list(without)} shows it" if without else "complete"
 
 
-def _words_on_copies(drives: Sequence[Row]) -> list[str]:
+def _words_on_identical_logs(drives: Sequence[Row]) -> list[str]:
     """Return in words which logs are copies of another log under another name; the findings of copies are counted too."""
     same = counts.group_rows(drives, lambda drive: drive["sha256"]).values()
     copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]

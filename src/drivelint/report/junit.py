@@ -74,7 +74,7 @@ def render(result: Result) -> bytes:
         events = counts.group_rows(gone, lambda entry: entry.event_key)
         suites.append(("baseline", list(map(_unfixed_case, events.values()))))
     for name, mine in suites:
-        counted = _append_suite(root, name, mine)
+        counted = _append_suite_and_return_counts(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
@@ -148,10 +148,10 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
                 add_failure(row, line(row), event.finding)
     for row in _distinct_reasons(failures_without_finding(result)):
         add_failure(row, with_count(row["reason"], row["count_all"]))
-    required = set(_case_keys(gating_unknowns(result)))
+    required = set(_test_case_keys(gating_unknowns(result)))
     cases: dict[str, list[Case]] = defaultdict(list)
     for key, lines in told.items():
-        cases[key[0]].append(_case(key, lines, is_required=key in required))
+        cases[key[0]].append(_test_case(key, lines, is_required=key in required))
     return cases
 
 
@@ -164,11 +164,11 @@ def _distinct_reasons(verdicts: pa.Table) -> Sequence[Row]:
     return counts.distinct_rows(rows, rows.column_names)
 
 
-def _case_keys(rows: pa.Table) -> Iterator[CaseKey]:
+def _test_case_keys(rows: pa.Table) -> Iterator[CaseKey]:
     return map(_case_key, rows.select(["drive_id", "rule_id", "profile"]).to_pylist())
 
 
-def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
+def _test_case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
     """Return the test case of a drive, rule and profile; `is_required`: an unknown verdict, or one that lacks a signal, is an error."""
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
@@ -191,7 +191,7 @@ def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
     return Case(name, "skipped", "not_applicable", not_applicable)
 
 
-def _append_suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
+def _append_suite_and_return_counts(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
     """Append a drive's suite to the document and return its counts."""
     outcomes = Counter(case.outcome for case in cases)
     counted = {"tests": len(cases), "failures": outcomes["failure"], "errors": outcomes["error"]}

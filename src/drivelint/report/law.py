@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_SOURCE_WORDS: Final = {"env": "--env", "trace": "the log", "map": "the map"}
+_NATION_SOURCE_WORDS: Final = {"env": "--env", "trace": "the log", "map": "the map"}
 
 
 def law_words(result: Result) -> str:
@@ -52,6 +52,6 @@ def _words_on_law(law: tuple[str, ...], drives: list[Row]) -> str:
             counted["assumed, as the nation is not known"] += 1
         else:
             how = "applied" if given["value"] in applied else "not applied"
-            counted[f"{how}: nation {given['value']} by {_SOURCE_WORDS[given['source']]}"] += 1
+            counted[f"{how}: nation {given['value']} by {_NATION_SOURCE_WORDS[given['source']]}"] += 1
     each = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(counted.items())]
     return f"of {name_list(list(law))} {'; '.join(each)}"

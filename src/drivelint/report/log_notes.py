@@ -48,7 +48,7 @@ class LogNotes:
             self.add(LogNote(each.path, f"not judged: {each.error}"))
 
 
-def same_log_note(path: Path, drive_id: str) -> LogNote:
+def note_on_repeated_log(path: Path, drive_id: str) -> LogNote:
     """Return the note on a log with the same content as an earlier log."""
     return LogNote(path, f"{path}: the same content as the log of {drive_id}: judged once")
 

@@ -13,7 +13,7 @@ from drivelint.gate import descriptions
 from drivelint.phrases import escape_invisible, plural, terminal_safe_line
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import headline, one_per_event_and_status, status_at_gate
+from drivelint.report.outcome import headline, one_finding_per_event_and_status, status_at_gate
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
@@ -63,11 +63,11 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         stopping=[item for item in findings if not item[1]],
         excused=[item for item in findings if item[1]],
         n_new_excused=len(
-            one_per_event_and_status(
+            one_finding_per_event_and_status(
                 gate, [row for row, why in findings if why and status_at_gate(gate, row["finding_id"]) == "new"]
             )
         ),
-        counted=lambda items: one_per_event_and_status(gate, [row for row, _ in items]),
+        counted=lambda items: one_finding_per_event_and_status(gate, [row for row, _ in items]),
         rows_of_findings=lambda items, told: counts.extra_rows_sentence([row for row, _ in items], told),
         rules=rules,
         starts=result.start_times,

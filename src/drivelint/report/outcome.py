@@ -16,7 +16,7 @@ from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
 from drivelint.result.model import decision_counts, exit_status, gating_findings, is_too_little_decided
-from drivelint.result.text import number, subject
+from drivelint.result.text import ego_and_object_names, number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -38,7 +38,7 @@ _TOO_LITTLE_JUDGED: Final = "TOO LITTLE JUDGED"
 """The label of a run that exits with 4 because it decided fewer rules than `--min-judged` requires."""
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
 _FINDINGS_LABEL: Final = "FINDINGS"
-_KIND_OF_LABEL: Final = {
+_HEADLINE_KIND_OF_LABEL: Final = {
     LABEL_OF_EXIT_CODE[ExitCode.OK]: "pass",
     _NOT_APPLICABLE: "not_applicable",
     _FINDINGS_LABEL: "near",
@@ -50,7 +50,7 @@ _NO_MAP_WORDS: Final = {
     NOT_IN_FOLDER_CHECK: "no map in the folder covers the place",
 }
 """Data-quality checks because of which a drive has no map, in words."""
-_COUNTED_LABEL: Final = "counted"
+_GATING_WITHOUT_BASELINE_OR_WAIVERS_LABEL: Final = "counted"
 """The word for gating findings if the gate has neither a baseline nor waivers, only a confidence."""
 
 
@@ -100,7 +100,7 @@ class Event(NamedTuple):
     def other_rows_words(self) -> str:
         """The other rows in words, such as "also under the profile observed, margin -3.00 m"; '' if there are none."""
         return "; ".join(
-            f"also found for {subject(row)}"
+            f"also found for {ego_and_object_names(row)}"
             if row["ego_id"] != self.finding["ego_id"]
             else f"also under the profile {row['profile']}"
             + ("" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}")
@@ -149,7 +149,7 @@ class RuleCounts(NamedTuple):
 def headline(result: Result) -> Headline:
     """Return the outcome of a run. Each finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    rows = one_per_event_and_status(result.gate, result.findings.to_pylist())
+    rows = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
     left = [row for row in rows if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
     label = _outcome_label(result, bool(rows))
     told = counts.verdict_counts(result.verdicts)
@@ -159,7 +159,7 @@ def headline(result: Result) -> Headline:
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_less_sentence(before)
     whole = whole and not less
-    kind = "unknown" if less else _KIND_OF_LABEL.get(label, "unknown")
+    kind = "unknown" if less else _HEADLINE_KIND_OF_LABEL.get(label, "unknown")
     if not rows:
         parts = [HeadlinePart(_no_findings_words(result, told, label, is_all_judged=whole))]
     else:
@@ -184,13 +184,13 @@ def headline(result: Result) -> Headline:
     return Headline(label, "fail" if left else kind, tuple(parts))
 
 
-def one_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
+def one_finding_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
     """Return one finding of each event; if the findings of an event differ in standing (new, known), one of each standing."""
     return [event.finding for event in events_by_status(gate, rows)]
 
 
 def events_by_status(gate: Gate | None, rows: Sequence[Row]) -> list[Event]:
-    """Return the events with the findings of `one_per_event_and_status`, in the order of these findings."""
+    """Return the events with the findings of `one_finding_per_event_and_status`, in the order of these findings."""
     of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
     members: dict[int, list[Row]] = {}
     for mine in of_standing.values():
@@ -274,7 +274,9 @@ def _findings_words(result: Result, rows: Sequence[Row]) -> str:
         if name not in LET_THROUGH_WORDS:
             n, gating = len(mine), len(counts.one_finding_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
-            label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED_LABEL}[name]
+            label = {"new": "new", "open": "not waived" if gate.waivers else _GATING_WITHOUT_BASELINE_OR_WAIVERS_LABEL}[
+                name
+            ]
             said.append(f"{n} {label} ({counts.severity_counts_text(mine)}{some})")
     said += [
         f"{len(groups[name])} {words} ({counts.severity_counts_text(groups[name])})"
@@ -317,7 +319,13 @@ def _contacts_at_gate_words(gate: Gate | None, contacts: Sequence[Row]) -> str:
         return ""
     new = {row["drive_id"] for row in contacts if gate.status_at_gate(row["finding_id"]) not in LET_THROUGH_WORDS}
     if new:
-        label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED_LABEL
+        label = (
+            "new"
+            if gate.baseline is not None
+            else "not waived"
+            if gate.waivers
+            else _GATING_WITHOUT_BASELINE_OR_WAIVERS_LABEL
+        )
         return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
     why = {gate.status_at_gate(row["finding_id"]) for row in contacts}
     return f" ({' or '.join(words for name, words in LET_THROUGH_WORDS.items() if name in why)})"

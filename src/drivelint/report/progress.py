@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import rich.progress
 
 
-TELL_EVERY_S: Final = 60.0
-_CHECK_PERIOD_S: Final = 1.0
-_LEAST_SHARE_FOR_ESTIMATE: Final = 0.1
+PROGRESS_PRINT_INTERVAL_S: Final = 60.0
+_PRINT_DUE_CHECK_PERIOD_S: Final = 1.0
+_LEAST_DONE_SHARE_FOR_TIME_ESTIMATE: Final = 0.1
 """The remaining time is estimated after this share of the work."""
 _RESUMED_UNITS_REPORTED_WITHIN_S: Final = 0.5
 """Units that are reported within this time after the beginning of a stage were done by an earlier run."""
@@ -75,7 +75,7 @@ class NotePrinter(Silent):
     def print_progress_if_due(self) -> None:
         """Print the progress and an estimate of the time left, if the last progress line is at least a minute old."""
         now_s = time.monotonic()
-        if self._total is None or now_s - self._told_s < TELL_EVERY_S:
+        if self._total is None or now_s - self._told_s < PROGRESS_PRINT_INTERVAL_S:
             return
         self._told_s = now_s
         new = self._done + self._part - self._had
@@ -83,7 +83,7 @@ class NotePrinter(Silent):
         # no estimate from the first part of the work, which includes initialisation
         left_s = (
             (now_s - self._begun_s) / new * (todo - new)
-            if new >= min(1.0, _LEAST_SHARE_FOR_ESTIMATE * todo) and new
+            if new >= min(1.0, _LEAST_DONE_SHARE_FOR_TIME_ESTIMATE * todo) and new
             else None
         )
         self.note(
@@ -115,7 +115,7 @@ def note_printer() -> Iterator[NotePrinter]:
     printer, over = NotePrinter(), Event()
 
     def print_progress_until_over() -> None:
-        while not over.wait(_CHECK_PERIOD_S):
+        while not over.wait(_PRINT_DUE_CHECK_PERIOD_S):
             printer.print_progress_if_due()
 
     teller = Thread(target=print_progress_until_over, daemon=True, name="tells how far it is")

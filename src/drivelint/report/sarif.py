@@ -21,11 +21,11 @@ from drivelint.result.model import exit_status, gating_findings
 from drivelint.result.names import RUN_FILE
 from drivelint.result.text import (
     breach_title,
+    ego_and_object_names,
     measured_values_text,
     number,
     replace_non_finite,
     rule_name,
-    subject,
     utc_at,
     with_count,
 )
@@ -113,7 +113,7 @@ class _SarifRun:
         start_ns = drive["t_start_ns"]
         measured = "" if row["reason_measures"] else measured_values_text(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
-        who = f"{subject(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
+        who = f"{ego_and_object_names(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
         said = [
             f"{breach_title(rule)}: {row['reason']}",
             measured,

@@ -10,7 +10,7 @@ import duckdb
 
 from drivelint import __version__
 from drivelint.gate import descriptions
-from drivelint.report.outcome import one_per_event_and_status
+from drivelint.report.outcome import one_finding_per_event_and_status
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.schemas import OUTPUT_VERSION
@@ -43,7 +43,7 @@ def content(result: Result) -> dict[str, Any]:
     """Return the summary as plain data; counts of verdicts include kinds that did not occur, with 0."""
     end = exit_status(result)
     near = result.verdicts.filter(result.verdicts["near_miss"])
-    events = one_per_event_and_status(result.gate, result.findings.to_pylist())
+    events = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
     return {
         "output_schema": OUTPUT_VERSION,
         "tool": {"name": "drivelint", "version": __version__, "duckdb": duckdb.__version__},

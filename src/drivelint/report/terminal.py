@@ -14,7 +14,7 @@ from rich.text import Text
 
 from drivelint.phrases import name_list
 from drivelint.report import NARROW_BELOW_COLUMNS, terminal_summary
-from drivelint.report.outcome import one_per_event_and_status
+from drivelint.report.outcome import one_finding_per_event_and_status
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
@@ -139,7 +139,7 @@ def _finding_or_near_miss_table(
     if not rows.num_rows:
         return None
     is_of_findings = "finding_id" in rows.column_names
-    counted = one_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
+    counted = one_finding_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
     more = counts.extra_rows_sentence(rows.to_pylist(), counted) if is_of_findings else ""
     cut = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
     table = _empty_table(
@@ -220,7 +220,7 @@ def _quality_table(result: Result) -> Table | None:
 
 
 def _assumptions_text(result: Result) -> Text | None:
-    assumed = counts.count_assuming(result.verdicts, "line_of_sight")
+    assumed = counts.count_verdicts_assuming(result.verdicts, "line_of_sight")
     if not assumed:
         return None
     verb = "verdict assumes" if assumed == 1 else "verdicts assume"

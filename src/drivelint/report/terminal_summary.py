@@ -23,7 +23,7 @@ from drivelint.report.outcome import (
     LABEL_OF_EXIT_CODE,
     LET_THROUGH_WORDS,
     headline,
-    one_per_event_and_status,
+    one_finding_per_event_and_status,
     rule_counts,
     status_at_gate,
 )
@@ -31,7 +31,7 @@ from drivelint.report.worst_first import is_contact, moment_ns, worst_first, wor
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.model import exit_status, gating_verdicts_lacking_signal, map_misfit_reason
-from drivelint.result.text import breach_title, closing_words, ego_name, number, seconds, tolerance
+from drivelint.result.text import breach_title, closing_speed_words, ego_name, number, seconds, tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -76,7 +76,7 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     Findings that a gate lets through are only counted, but if a drive has no other findings, the worst is shown.
     """
     rules = _rules_by_id(result)
-    every = one_per_event_and_status(result.gate, worst_first(result.findings, rules).to_pylist())
+    every = one_finding_per_event_and_status(result.gate, worst_first(result.findings, rules).to_pylist())
     found = [row for row in every if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
     drives = _drives_table(result, found, every, rules, width)
     parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
@@ -245,7 +245,7 @@ def _finding_cell(
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
     if contact and row["closing_mps"] is not None:
-        parts = [*who, closing_words(row["closing_mps"])]
+        parts = [*who, closing_speed_words(row["closing_mps"])]
         who = []
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"

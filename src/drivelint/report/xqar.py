@@ -19,7 +19,7 @@ from drivelint.report.outcome import events_by_status
 from drivelint.report.worst_first import when
 from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
-from drivelint.result.text import subject, verdict_or_finding_line, with_count
+from drivelint.result.text import ego_and_object_names, verdict_or_finding_line, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -51,7 +51,9 @@ def render(result: Result) -> bytes:
         total: Counter[str] = Counter()
         for rule in rules:
             at = drive["drive_id"], rule["rule_id"]
-            total += _write_checker(bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate)
+            total += _write_checker_and_return_verdict_counts(
+                bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate
+            )
         judged = drive["status"] == "judged"
         summary = _counts_text(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
         bundle.set("summary", replace_non_xml(summary))
@@ -69,7 +71,7 @@ def rule_uid(rule_id: str, pack: str) -> str:
     return f"drivelint.rules:{re.sub('[^a-z]', '', pack.lower()) or 'custom'}:{release}:{dotted}"
 
 
-def _write_checker(
+def _write_checker_and_return_verdict_counts(
     bundle: etree._Element,
     rule: Row,
     drive: Row,
@@ -126,7 +128,7 @@ def _write_event(checker: etree._Element, event: Event, rule: Row, start_ns: int
     notes += ["known: the baseline contains it"] if gate and gate.is_in_baseline(row["finding_id"]) else []
     level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION_LEVEL
     issue = _add_issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)
-    where = f"{subject(row)}, {moment} into the drive; map metres"
+    where = f"{ego_and_object_names(row)}, {moment} into the drive; map metres"
     place = add_element(issue, "Locations", description=where)
     if row["x_m"] is not None and row["y_m"] is not None:
         add_element(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")

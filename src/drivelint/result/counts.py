@@ -32,7 +32,7 @@ def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int
     return {value: found.get(value, 0) for value in values}
 
 
-def count_assuming(verdicts: pa.Table, assumption: str) -> int:
+def count_verdicts_assuming(verdicts: pa.Table, assumption: str) -> int:
     """Return the number of verdicts with this assumption in the column `assumes`."""
     return tally(verdicts, (assumption,), "assumes")[assumption]
 

@@ -36,13 +36,13 @@ ORDER_OF_ROWS: Final = {
     "opportunities": "drive_id, ego_id, occurrence, style, profile",
 }
 """Evidence table of a result -> the order of its rows."""
-HALF_PATH_S: Final = 5.0
+PATH_BEFORE_AND_AFTER_MOMENT_S: Final = 5.0
 """Paths in a scene extend this long before and after the moment of the scene."""
 PATH_STEP_NS: Final = 200_000_000
 """A path has at most one point per time step of this length."""
-SCENE_RADIUS_M: Final = (60.0, 300.0)
+SCENE_RADIUS_RANGE_M: Final = (60.0, 300.0)
 """Least and largest radius of a scene around the ego."""
-SCENES_AT_ONCE: Final = 400
+SCENES_PER_STATEMENT: Final = 400
 """Number of scenes made in one statement: their paths are lists, which the database keeps in memory."""
 SCENES_PER_RULE: Final = 20
 """Largest number of scenes per ego, rule and profile: the scenes with the worst margins."""
@@ -72,12 +72,15 @@ def evidence_tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
 
 def _add_scenes(con: duckdb.DuckDBPyConnection) -> None:
     """Add the scenes of the batch that was just judged, and the danger spaces of the scenes."""
-    least, most = SCENE_RADIUS_M
+    least, most = SCENE_RADIUS_RANGE_M
     con.execute(statement("evidence/every_moment"), {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": most})
     counts = con.execute("SELECT ego_no, count(*) FROM _every_moment GROUP BY ego_no ORDER BY ego_no").fetchall()
     for first, end in _groups_of_egos(counts):
         con.execute(statement("evidence/moment"), {"first_no": first, "end_no": end})
-        con.execute(statement("evidence/around"), {"path_ns": int(HALF_PATH_S * 1e9), "step_ns": PATH_STEP_NS})
+        con.execute(
+            statement("evidence/around"),
+            {"path_ns": int(PATH_BEFORE_AND_AFTER_MOMENT_S * 1e9), "step_ns": PATH_STEP_NS},
+        )
         con.execute(statement("evidence/scene"))
         edges = con.execute(statement("evidence/danger_space_edge")).to_arrow_table()
         if edges.num_rows:
@@ -85,13 +88,13 @@ def _add_scenes(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def _groups_of_egos(moments_by_ego: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Cut egos into groups [first, end) with at most `SCENES_AT_ONCE` moments, or with one ego.
+    """Cut egos into groups [first, end) with at most `SCENES_PER_STATEMENT` moments, or with one ego.
 
     `moments_by_ego`: (ego, number of moments).
     """
     first, n = 1, 0
     for ego, moments in moments_by_ego:
-        if n and n + moments > SCENES_AT_ONCE:
+        if n and n + moments > SCENES_PER_STATEMENT:
             yield first, ego
             first, n = ego, 0
         n += moments
@@ -116,7 +119,7 @@ def _add_lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
 
 def lane_shapes_of_map(environment: MapTables) -> pa.Table:
     """Return the table `lane_shape` for all lanes of a map, totally ordered."""
-    with store.workspace(None) as con:
+    with store.temporary_database(None) as con:
         for table in ("lanelet", "lane_boundary", "lane_point"):
             store.insert(con, table, environment.tables[table])
         con.execute("CREATE TEMP TABLE _near AS SELECT environment_id, lanelet_id FROM lanelet")

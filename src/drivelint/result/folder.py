@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _HASHES_KEY: Final = "sha256"
 _WORK_FOLDER_PREFIX: Final = ".drivelint.work"
-EARLIER_FOLDER: Final = "earlier"
+EARLIER_RESULT_FOLDER: Final = "earlier"
 """The subfolder for an earlier result after a run that ended without a result. The next result replaces the earlier one."""
 
 
@@ -70,8 +70,8 @@ def working_folder(
 
 
 def _move_earlier_result_aside(out: Path, patterns: Sequence[str], mark_file: str, *, overwrite: bool) -> None:
-    """Move an earlier result into the subfolder `EARLIER_FOLDER`. The mark moves first: without it, `out` has no result."""
-    earlier = out / EARLIER_FOLDER
+    """Move an earlier result into the subfolder `EARLIER_RESULT_FOLDER`. The mark moves first: without it, `out` has no result."""
+    earlier = out / EARLIER_RESULT_FOLDER
     with suppress(OutputError):  # files that remain are replaced below; this error must not hide why the run ended
         _remove_files(earlier, sorted(_replaceable_files(earlier, patterns, overwrite=False)))
     names = _replaceable_files(out, patterns, overwrite=overwrite)
@@ -162,7 +162,7 @@ def replace_result(
     hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
     publish(out, {MANIFEST: manifest_bytes(names, hashes), **contents}, {**unused_files, **finished_files}, mark_file)
     _remove_empty_subfolders(out, unused_files)
-    earlier = out / EARLIER_FOLDER
+    earlier = out / EARLIER_RESULT_FOLDER
     _remove_files(
         earlier,
         [
@@ -217,12 +217,12 @@ def _replaceable_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -
 
 def _stored_hashes(out: Path) -> dict[str, str]:
     try:
-        return hashes_in((out / MANIFEST).read_bytes())
+        return hashes_in_manifest((out / MANIFEST).read_bytes())
     except OSError:
         return {}  # the result was copied without its list
 
 
-def hashes_in(content: bytes) -> dict[str, str]:
+def hashes_in_manifest(content: bytes) -> dict[str, str]:
     """Return name -> sha256 from the content of `files.json`; empty for a damaged file or one of an older version."""
     try:
         return {str(name): str(said) for name, said in json.loads(content)[_HASHES_KEY].items()}

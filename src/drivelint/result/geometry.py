@@ -124,7 +124,7 @@ def _actor_box_areas(rows: pa.Table) -> Geometries:
 
 def _track_lines(rows: pa.Table) -> Geometries:
     """Return one line per row through its known positions; a single position gives a line of zero length."""
-    xy, row = _known_points(rows)
+    xy, row = _known_points_and_their_rows(rows)
     single = np.bincount(row, minlength=rows.num_rows)[row] == 1
     return _geometries_by_row(
         shapely.linestrings, np.repeat(xy, 1 + single, axis=0), np.repeat(row, 1 + single), rows.num_rows
@@ -132,7 +132,7 @@ def _track_lines(rows: pa.Table) -> Geometries:
 
 
 def _judged_points(rows: pa.Table) -> Geometries:
-    xy, row = _known_points(rows)
+    xy, row = _known_points_and_their_rows(rows)
     return _geometries_by_row(shapely.multipoints, shapely.points(xy), row, rows.num_rows)
 
 
@@ -147,7 +147,7 @@ def _geometries_by_row(
     return np.asarray(make(parts, indices=row, out=made)) if len(parts) else made
 
 
-def _known_points(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _known_points_and_their_rows(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the known positions, and the row of each position."""
     xy, offsets = _points_and_offsets(rows, "")
     known = np.isfinite(xy).all(axis=1)

@@ -55,15 +55,15 @@ def publish(
             staged.append(_temporary_and_final_path(out / name))
             staged[-1][0].write_bytes(content)
         for temporary, _ in staged:
-            _sync(temporary)
+            _sync_to_disk(temporary)
         for name in [mark_file] if mark_file else []:
             (out / name).unlink(missing_ok=True)
-            _sync(out)
+            _sync_to_disk(out)
         for name in [name for name, source in finished_files.items() if source is None]:
             (out / name).unlink(missing_ok=True)
         for temporary, final in staged:
             temporary.replace(final)
-        _sync(out)
+        _sync_to_disk(out)
     except OSError as error:
         raise _unwritable_error(out, error) from error
     finally:
@@ -85,7 +85,7 @@ def _unwritable_error(out: Path, error: OSError) -> OutputError:
     )
 
 
-def _sync(path: Path) -> None:
+def _sync_to_disk(path: Path) -> None:
     """Write a file's content, or a folder's entries, to the disk (fsync)."""
     handle = os.open(path, os.O_RDONLY)
     try:

@@ -18,7 +18,7 @@ from drivelint.errors import UsageError
 from drivelint.result.names import RUN_FILE
 
 _PATH_OPTIONS: Final = ("map", "map_dir")
-_KEY_OF_FIELD: Final = {"relative_paths": "named", "manifest_options": "own"}
+_JSON_KEY_OF_FIELD: Final = {"relative_paths": "named", "manifest_options": "own"}
 """Field -> its key in the file, for fields with another key."""
 
 
@@ -53,11 +53,11 @@ class RunRequest(DriveInput):
         cls, options: DriveInput, traces: dict[str, str], manifest_options: dict[str, DriveInput] | None = None
     ) -> RunRequest:
         """Return the request with the options of `check`, unchanged except for the traces."""
-        apart = {"traces", *_KEY_OF_FIELD}
+        apart = {"traces", *_JSON_KEY_OF_FIELD}
         kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
         relative_paths = {
             drive: path
-            for drive, path in sorted((name, _path_from_workdir(path)) for name, path in traces.items())
+            for drive, path in sorted((name, _path_relative_to_workdir(path)) for name, path in traces.items())
             if path
         }
         return cls(**kept, traces=traces, relative_paths=relative_paths, manifest_options=manifest_options or {})
@@ -66,7 +66,7 @@ class RunRequest(DriveInput):
 def render(run_options: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     content: dict[str, Any] = msgspec.to_builtins(run_options, enc_hook=str)
-    named = {_KEY_OF_FIELD.get(name, name): value for name, value in content.items() if name != "traces"}
+    named = {_JSON_KEY_OF_FIELD.get(name, name): value for name, value in content.items() if name != "traces"}
     plain = {"traces": {drive: _relative_path(path, out) for drive, path in sorted(content["traces"].items())}, **named}
     plain["rules_dirs"] = [_relative_path(path, out) for path in plain["rules_dirs"]]
     _make_paths_relative(plain, out)
@@ -91,7 +91,7 @@ def load(folder: Path) -> RunRequest:
             _join_paths_to_folder(folder, each)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
-        plain |= {field_: plain.pop(name) for field_, name in _KEY_OF_FIELD.items() if name in plain}
+        plain |= {field_: plain.pop(name) for field_, name in _JSON_KEY_OF_FIELD.items() if name in plain}
         return msgspec.convert(plain, RunRequest, dec_hook=lambda kind, value: kind(value))
     except FileNotFoundError as error:
         raise UsageError(
@@ -115,7 +115,7 @@ def _join_paths_to_folder(folder: Path, plain: dict[str, Any]) -> None:
     plain |= {key: str(folder / plain[key]) for key in _PATH_OPTIONS if plain[key] is not None}
 
 
-def _path_from_workdir(path: str) -> str:
+def _path_relative_to_workdir(path: str) -> str:
     """Return a path relative to the working folder, if possible without resolving links; '' for a path outside that folder."""
     here = Path.cwd()
     as_given = PurePath(os.path.abspath(path))  # noqa: PTH100 - resolve() follows links

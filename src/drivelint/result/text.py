@@ -31,7 +31,7 @@ def breach_title(rule: Row) -> str:
     return rule["breach"] or f"Not kept: {rule['title']}"
 
 
-def closing_words(closing_mps: float) -> str:
+def closing_speed_words(closing_mps: float) -> str:
     """Return in words how fast two road users approach each other, or move apart if `closing_mps` is negative."""
     apart = closing_mps < 0 and round(closing_mps, 2) != 0
     return f"{'moving apart' if apart else 'closing'} at {number(abs(closing_mps), 'm/s')}"
@@ -82,7 +82,7 @@ def brief_id(actor_id: str) -> str:
     return actor_id if len(actor_id) <= MOST_LABEL_CHARS else f"{actor_id[: MOST_LABEL_CHARS - 4]}…"
 
 
-def subject(row: Row) -> str:
+def ego_and_object_names(row: Row) -> str:
     """Return the names of the ego and, if any, the object of a verdict or finding."""
     who = ego_name(row["ego_id"]) if row["ego_id"] else "no ego"
     return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
@@ -110,7 +110,7 @@ def verdict_or_finding_line(row: Row, when: str) -> str:
     The measured values are omitted if the reason contains them.
     """
     measured = "" if row["reason_measures"] else measured_values_text(row)
-    parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt_words(row)]
+    parts = [f"{when}: {ego_and_object_names(row)}", measured, row["reason"], doubt_words(row)]
     return "; ".join(part for part in parts if part)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.phrases import plural
-from drivelint.result.text import ego_name, number, rule_name, seconds, subject, with_count
+from drivelint.result.text import ego_and_object_names, ego_name, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,5 +44,6 @@ def cell(value: Any) -> Any:
 
 
 _FILTERS: Final[dict[str, Callable[..., Any]]] = {
-    each.__name__: each for each in (cell, ego_name, number, plural, rule_name, seconds, subject, with_count)
+    each.__name__: each
+    for each in (cell, ego_name, number, plural, rule_name, seconds, ego_and_object_names, with_count)
 }

@@ -25,12 +25,12 @@ MOST_GAP_WITHIN_CARRIAGEWAY_M: Final = (
 )
 MOST_GAP_BETWEEN_CARRIAGEWAYS_M: Final = 15.0  # the largest gap between the two carriageways of a road
 LEAST_OPPOSING_LENGTH_M: Final = 20.0  # shorter lanes beside each other are a corner or an error of the map
-DECISIVE_SHARE: Final = 2 / 3
-_MOST_OVERLAP_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
-_OTHER_LEVEL_M: Final = 3.0  # lanes with at least this difference in height are not neighbours
+DECISIVE_SHARE_OF_OPPOSING_LENGTH: Final = 2 / 3
+_MOST_OVERLAP_OF_NEIGHBOURS_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
+_OTHER_LEVEL_HEIGHT_DIFFERENCE_M: Final = 3.0  # lanes with at least this difference in height are not neighbours
 _LEAST_PARALLEL_COS: Final = float(np.cos(np.radians(30)))
-_WIDEST_HALF_LANE_M: Final = 4.0
-_MOST_PROBES: Final = 20_000  # the most segments that are examined, evenly spread
+_LARGEST_HALF_LANE_WIDTH_M: Final = 4.0
+_MOST_EXAMINED_SEGMENTS: Final = 20_000  # the most segments that are examined, evenly spread
 
 
 class _LaneSegments(NamedTuple):
@@ -58,7 +58,7 @@ def side_driven_on(lanes_points: Sequence[Floats]) -> str | None:
     for most_gap_m in (MOST_GAP_WITHIN_CARRIAGEWAY_M, MOST_GAP_BETWEEN_CARRIAGEWAYS_M):
         left, right = _opposing_lengths_m(segments, most_gap_m)
         if left + right >= LEAST_OPPOSING_LENGTH_M:
-            decisive = DECISIVE_SHARE * (left + right)
+            decisive = DECISIVE_SHARE_OF_OPPOSING_LENGTH * (left + right)
             return "rht" if left >= decisive else "lht" if right >= decisive else None
     return None
 
@@ -79,7 +79,7 @@ def _opposing_lengths_m(segments: _LaneSegments, most_gap_m: float) -> tuple[flo
     Gaps of more than `most_gap_m` do not count. If both sides have an opposite lane, only the nearer counts.
     """
     n = len(segments.lane)
-    chosen = np.unique(np.linspace(0, n - 1, min(_MOST_PROBES, n)).astype(np.intp))
+    chosen = np.unique(np.linspace(0, n - 1, min(_MOST_EXAMINED_SEGMENTS, n)).astype(np.intp))
     tree = shapely.STRtree(shapely.linestrings(np.stack([segments.begin[:, :2], segments.end[:, :2]], axis=1)))
     left, right = (_gaps_to_opposing_m(segments, tree, chosen, side, most_gap_m) for side in (1.0, -1.0))
     length = segments.length[chosen]
@@ -92,16 +92,18 @@ def _gaps_to_opposing_m(
     """Return the gap (m) from these segments to the nearest lane on one side (1: left, -1: right); infinity if it is no opposite lane."""
     x, y, _, half = ((segments.begin + segments.end) / 2)[indices].T
     ux, uy = segments.ux[indices], segments.uy[indices]
-    reach = (half - _MOST_OVERLAP_M, half + most_gap_m + _WIDEST_HALF_LANE_M)
+    reach = (half - _MOST_OVERLAP_OF_NEIGHBOURS_M, half + most_gap_m + _LARGEST_HALF_LANE_WIDTH_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
     gaps = np.full(len(indices), np.inf)
     for probes, other_segments in query_in_parts(tree, shapely.linestrings(*across), "intersects"):
-        nearest, gap = _probes_and_gaps_m(segments, indices, probes, other_segments, side=side, most_gap_m=most_gap_m)
+        nearest, gap = _segments_and_gaps_to_nearest_lane_m(
+            segments, indices, probes, other_segments, side=side, most_gap_m=most_gap_m
+        )
         gaps[nearest] = gap
     return gaps
 
 
-def _probes_and_gaps_m(
+def _segments_and_gaps_to_nearest_lane_m(
     segments: _LaneSegments,
     indices: Indices,
     probes: Indices,
@@ -125,8 +127,8 @@ def _probes_and_gaps_m(
     cross = ux[probes] * segments.uy[other_segments] - uy[probes] * segments.ux[other_segments]
     off = dy * ux[probes] - dx * uy[probes] - (dx * ux[probes] + dy * uy[probes]) * cross / along
     gap = side * off - half[probes] - other_half
-    on_level = ~(np.abs(z[probes] - other_z) >= _OTHER_LEVEL_M)  # also true for an unknown height
-    fits = (gap > -_MOST_OVERLAP_M) & (gap <= most_gap_m) & on_level
+    on_level = ~(np.abs(z[probes] - other_z) >= _OTHER_LEVEL_HEIGHT_DIFFERENCE_M)  # also true for an unknown height
+    fits = (gap > -_MOST_OVERLAP_OF_NEIGHBOURS_M) & (gap <= most_gap_m) & on_level
     probes, gap, along = probes[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probes))
     nearest = order[np.r_[True, np.diff(probes[order]) > 0]] if len(order) else order

@@ -15,7 +15,7 @@ _SPACING_M = 4.0  # the most between points of a lane, because positions are sea
 _SAME_POINT_M = 0.0005  # points at most this far apart are one point
 _JITTER_M = 0.01  # a step back that is at most this long is inaccurate drawing
 _WIDEST_M = 60.0  # a wider lane is an error in the bounds
-FARTHEST_M: Final = 1e12  # a larger coordinate is an error, and GEOS may fail on it
+LARGEST_COORDINATE_M: Final = 1e12  # a larger coordinate is an error, and GEOS may fail on it
 _LONGEST_M = 100_000.0  # a longer lane is an error in the bounds
 
 
@@ -85,7 +85,7 @@ def check_bounds(left: Floats, right: Floats) -> None:
     """Raise `UnbuildableError` if no lane can be made of these bounds (n, 2), (m, 2)."""
     if len(left) < 2 or len(right) < 2:
         raise UnbuildableError("a bound has fewer than two points")
-    if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
+    if not all((np.abs(bound) < LARGEST_COORDINATE_M).all() for bound in (left, right)):
         raise UnbuildableError("a bound has an impossible coordinate")
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 
-def heights_beside(line: Floats, points: Floats) -> Floats:
+def line_heights_closest_to_points(line: Floats, points: Floats) -> Floats:
     """Return the heights (m) of a line (n, 3) at its locations closest to these points (m, 2)."""
     at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
     return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _LEAST_OVERLAP_M2: Final = 1.0
 """Lanes with a smaller common area do not overlap."""
-_OTHER_LEVEL_M: Final = 3.0
+_OTHER_LEVEL_HEIGHT_DIFFERENCE_M: Final = 3.0
 """Lanes with at least this difference in height are above each other and do not cross (as in `driving_side`)."""
 
 
@@ -46,7 +46,10 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
         common = shapely.intersection(areas[i], areas[j])
         if common.area <= max(_LEAST_OVERLAP_M2, least_share * min(areas[i].area, areas[j].area)):
             continue
-        if _height_difference_m(a, b, common) >= _OTHER_LEVEL_M or _crossing_angle_rad(a, b, common) < least_angle_rad:
+        if (
+            _height_difference_m(a, b, common) >= _OTHER_LEVEL_HEIGHT_DIFFERENCE_M
+            or _crossing_angle_rad(a, b, common) < least_angle_rad
+        ):
             continue
         overlaps |= {i, j}
         parent[max(first_of_group(i), first_of_group(j))] = min(first_of_group(i), first_of_group(j))

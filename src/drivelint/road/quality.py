@@ -8,7 +8,7 @@ from typing import Any, Final
 from drivelint.phrases import escape_invisible, name_list
 from drivelint.sql.words import vocabularies
 
-SIGNS_UNMAPPED: Final = "signs_unmapped"
+SIGNS_UNMAPPED_CHECK: Final = "signs_unmapped"
 """The id of the check for a map without stop and give-way signs, even if they exist on the road."""
 _EFFECTS_OF_UNKNOWN_WORDS: Final = {
     "lane_type": ("warning", "types of lanes", "vehicles are assumed not to drive there"),
@@ -18,7 +18,7 @@ _EFFECTS_OF_UNKNOWN_WORDS: Final = {
     "lanes_changed": ("info", "lane changes over road marks", "treated as not stated"),
 }
 """Vocabulary -> severity, the subject of its words, and the effect of an unknown word."""
-_NETCONVERT_STAND_IN_MPS: Final = 39.44
+_NETCONVERT_PLACEHOLDER_LIMIT_MPS: Final = 39.44
 """The limit (142 km/h) that SUMO's netconvert 1.28 writes for roads with `maxspeed=none`, and for motorways without a limit."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
@@ -32,9 +32,9 @@ class MapQuality:
         self._stand_ins = 0
         self._n_sections_under_wrong_side = 0
 
-    def posted_limit(self, limit_mps: float) -> float | None:
+    def limit_unless_placeholder(self, limit_mps: float) -> float | None:
         """Return a speed limit (m/s) of the map; None, and count it, if it is netconvert's placeholder for a missing limit."""
-        if abs(limit_mps - _NETCONVERT_STAND_IN_MPS) > 1e-9:
+        if abs(limit_mps - _NETCONVERT_PLACEHOLDER_LIMIT_MPS) > 1e-9:
             return limit_mps
         self._stand_ins += 1
         return None
@@ -71,7 +71,7 @@ class MapQuality:
                 rows.append(_quality_row("unknown_word", severity, None, message, words.total()))
         if self._stand_ins:
             message = (
-                f"{_NETCONVERT_STAND_IN_MPS:g} m/s is the value that netconvert writes for a road without a "
+                f"{_NETCONVERT_PLACEHOLDER_LIMIT_MPS:g} m/s is the value that netconvert writes for a road without a "
                 "limit: the limit is treated as unknown"
             )
             rows.append(_quality_row("invalid_speed", "warning", None, message, self._stand_ins))

@@ -14,7 +14,7 @@ from drivelint.facts import toml_beside
 
 _NAMES_AND_ARROWS: Final = toml_beside(__file__, "signnames.toml")
 _KINDS_BY_NAME_PATTERN: Final = [(re.compile(pattern), kind) for kind, pattern in _NAMES_AND_ARROWS["names"].items()]
-_ARROW_LIGHTS: Final = frozenset({"1000010", "1000011", "1000012"})
+_ARROW_LIGHT_CODES: Final = frozenset({"1000010", "1000011", "1000012"})
 _CODE_WITH_DOTS: Final = re.compile(r"\d\.\d{3}\.\d{3}")
 
 
@@ -54,7 +54,7 @@ def turns_of_light_code(code: str, subtype: str) -> list[str] | None:
     plain, finer = _code_without_dots(code), subtype.lower().removesuffix(".0")
     if finer in _NAMES_AND_ARROWS["full_lights"].get(plain, ()):
         return turns_of_light_direction("all")
-    return list(_NAMES_AND_ARROWS["arrows"].get(finer, ())) or None if plain in _ARROW_LIGHTS else None
+    return list(_NAMES_AND_ARROWS["arrows"].get(finer, ())) or None if plain in _ARROW_LIGHT_CODES else None
 
 
 def turns_of_light_direction(word: str) -> list[str] | None:

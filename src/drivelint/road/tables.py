@@ -10,8 +10,8 @@ import pyarrow.compute as pc
 
 from drivelint.road.geo_reference import GeoFrame, why_unusable
 from drivelint.road.map_reader import MapTables
-from drivelint.road.quality import SIGNS_UNMAPPED
-from drivelint.sql.store import owned_table
+from drivelint.road.quality import SIGNS_UNMAPPED_CHECK
+from drivelint.sql.store import table_with_owner_id
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,7 +60,7 @@ def map_tables(
     # a default side is marked, because the traces of another drive may show the real one
     marks = f"{'?' if side_and_source[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side_and_source[0]}{marks}"
-    tables = {table: owned_table(table, name, rows, map_format) for table, rows in content.items()}
+    tables = {table: table_with_owner_id(table, name, rows, map_format) for table, rows in content.items()}
     trouble = _why_unusable_for_lanes(geo, tables["lane_point"], request) if geo else None
     if geo and trouble:
         quality.add_unusable_geo_reference(geo.reference, trouble)
@@ -70,10 +70,10 @@ def map_tables(
         "handedness": side_and_source[0], "handedness_source": side_and_source[1], "geo_reference": geo.reference if geo else None,
         **{f"geo_offset_{part}": getattr(geo, part, None) for part in ("x_m", "y_m", "z_m", "yaw_rad")},
         "geo_usable": trouble is None if geo else None,
-        "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED for row in quality.rows),
+        "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED_CHECK for row in quality.rows),
     }  # fmt: skip
-    about = owned_table("environment", name, [environment], map_format)
-    found = owned_table("map_quality", name, quality.sorted_rows(), map_format)
+    about = table_with_owner_id("environment", name, [environment], map_format)
+    found = table_with_owner_id("map_quality", name, quality.sorted_rows(), map_format)
     return MapTables(name, *side_and_source, {"environment": about, **tables, "map_quality": found}, nation=nation)
 
 

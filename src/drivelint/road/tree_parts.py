@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Indices
 
-FIRST_PART_SHAPES: Final = 8
-MOST_GROWTH_OF_PART: Final = 8
+SHAPES_IN_FIRST_PART: Final = 8
+MOST_GROWTH_FACTOR_OF_PART: Final = 8
 PAIRS_PER_PART: Final = 1_000_000
 """The aim for the number of pairs in a part; the size of a part follows from the pairs per shape in the part before."""
 MOST_SHAPES_AT_ONE_PLACE: Final = 1000
@@ -42,14 +42,14 @@ def query_in_parts(
     too many pairs.
     """
     every = np.asarray(shapes, dtype=object)
-    begin, n = 0, FIRST_PART_SHAPES
+    begin, n = 0, SHAPES_IN_FIRST_PART
     while begin < len(every):
         shape, found = tree.query(every[begin : begin + n], predicate=predicate, distance=distance)
         if (n_at_one := len(found) // len(every[begin : begin + n])) > MOST_SHAPES_AT_ONE_PLACE:
             raise CrowdedPlaceError(n_at_one)
         yield shape + begin, found
         begin += n
-        n = max(1, min(MOST_GROWTH_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
+        n = max(1, min(MOST_GROWTH_FACTOR_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
 
 
 def all_pairs(

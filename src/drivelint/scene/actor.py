@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 DT_S: Final = 0.01
 """Time step of the motion; the recorder picks samples from these steps."""
-SIZES: Final[dict[str, tuple[float, float, float]]] = {
+DEFAULT_SIZE_BY_CLASS: Final[dict[str, tuple[float, float, float]]] = {
     "car": (4.5, 1.8, 1.5),
     "van": (5.5, 2.0, 2.2),
     "truck": (12.0, 2.5, 3.6),
@@ -37,9 +37,9 @@ SIZES: Final[dict[str, tuple[float, float, float]]] = {
 }
 """Class -> length, width and height in metres."""
 CLASSES_WITH_LIGHTS: Final = frozenset({"car", "van", "truck", "bus", "motorcycle", "vehicle", "trailer"})
-BRAKE_LIGHT_MPS2: Final = 1.0
+BRAKE_LIGHT_DECELERATION_MPS2: Final = 1.0
 """The deceleration above which the brake lights are on."""
-_LEAST_MOVING_MPS: Final = 0.3
+_LEAST_SPEED_FOR_HEADING_MPS: Final = 0.3
 """Below this speed, the motion does not change the heading."""
 
 
@@ -69,9 +69,9 @@ class Actor:
         """Length, width and height in metres; None: unknown in the log."""
         if self.text.size is None:
             kind = self.text.kind or "vehicle"
-            if kind not in SIZES:
-                raise UsageError(f"actor {self.name}: kind {kind!r}: {hint(kind, SIZES)}")
-            return SIZES[kind]
+            if kind not in DEFAULT_SIZE_BY_CLASS:
+                raise UsageError(f"actor {self.name}: kind {kind!r}: {hint(kind, DEFAULT_SIZE_BY_CLASS)}")
+            return DEFAULT_SIZE_BY_CLASS[kind]
         length, width, height, *_ = [*self.text.size, None, None, None]
         return length, width, height
 
@@ -88,8 +88,8 @@ class Actor:
         x, y = x - d * np.sin(heading), y + d * np.cos(heading)
         drift = np.gradient(d, DT_S)
         slip = np.where(
-            np.abs(v) > _LEAST_MOVING_MPS,
-            np.arctan2(drift, np.maximum(np.abs(v), _LEAST_MOVING_MPS)) * np.sign(v),
+            np.abs(v) > _LEAST_SPEED_FOR_HEADING_MPS,
+            np.arctan2(drift, np.maximum(np.abs(v), _LEAST_SPEED_FOR_HEADING_MPS)) * np.sign(v),
             0.0,
         )
         return self._motion_of_poses(t, x, y, z, heading + slip)
@@ -101,7 +101,7 @@ class Actor:
             raise UsageError(f"actor {self.name}: a track needs at least two points")
         px, py = _smooth_curve_values(times, x, held), _smooth_curve_values(times, y, held)
         vx, vy = np.gradient(px, DT_S), np.gradient(py, DT_S)
-        moving = np.hypot(vx, vy) > _LEAST_MOVING_MPS
+        moving = np.hypot(vx, vy) > _LEAST_SPEED_FOR_HEADING_MPS
         along = np.unwrap(np.arctan2(vy, vx)[moving]) if moving.any() else np.zeros(1)
         yaw = np.interp(t, t[moving], along) if moving.any() else np.zeros(t.shape)
         return self._motion_of_poses(t, px, py, np.zeros(t.shape), yaw)

@@ -261,7 +261,7 @@ def _parse_scene_file(path: Path) -> SceneFile:
     try:
         return msgspec.convert(raw, SceneFile, strict=True)
     except msgspec.ValidationError as error:
-        raise UsageError(f"{path}:{_line_of_scene(str(error), root)}: {error}") from error
+        raise UsageError(f"{path}:{_line_number_of_scene(str(error), root)}: {error}") from error
 
 
 def _set_lines_of_scenes(raw: dict[str, Any], root: Any) -> None:
@@ -290,7 +290,7 @@ def _line_of(root: Any, keys: Sequence[str | int]) -> int:
     return line
 
 
-def _line_of_scene(message: str, root: Any) -> int:
+def _line_number_of_scene(message: str, root: Any) -> int:
     """Return the line of the scene that a message of msgspec is about: `... at `$.scenes[3].actors`."""
     number = re.search(r"\$\.scenes\[(\d+)\]", message)
     nodes: Any = next((node.value for key, node in root.value if key.value == "scenes"), [])

@@ -68,7 +68,7 @@ class VerdictsOfScenes(NamedTuple):
         found = {row["verdict"] for row in self.rows.get(key, ())}
         return next((verdict for verdict in _VERDICTS_WORST_FIRST if verdict in found), NOT_JUDGED)
 
-    def codes(self, key: Key) -> set[str]:
+    def reason_codes_of_verdict(self, key: Key) -> set[str]:
         """Return the reason codes of the rows with the worst verdict."""
         worst = self.verdict(key)
         return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
@@ -133,8 +133,8 @@ def differences(scene: Scene, verdicts: VerdictsOfScenes, gating: Container[str]
         if got not in _VERDICTS_BY_EXPECTATION[expected_verdict.verdict]:
             why = f" ({expected_verdict.why})" if expected_verdict.why else ""
             yield f"{rule}: expected {expected_verdict.verdict}{why}, got {got}: {verdicts.reasons_text(key)}"
-        elif expected_verdict.code and expected_verdict.code not in verdicts.codes(key):
-            codes = ", ".join(sorted(verdicts.codes(key)))
+        elif expected_verdict.code and expected_verdict.code not in verdicts.reason_codes_of_verdict(key):
+            codes = ", ".join(sorted(verdicts.reason_codes_of_verdict(key)))
             yield f"{rule}: expected {got} for {expected_verdict.code}, got {codes}: {verdicts.reasons_text(key)}"
     for (name, rule), rows in sorted(verdicts.rows.items()):
         if name != scene.name or rule in expectations or rule not in gating:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from drivelint.scene.document import Crossroads, LaneEntry, RoadEntry, RoadLayout, Roundabout
 
 _ANGLE_BY_COMPASS_POINT: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
-_LANE: Final = re.compile(r"(.+) (-?\d+)")
+_ROAD_AND_LANE_NUMBER: Final = re.compile(r"(.+) (-?\d+)")
 _KINDS_OF_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
 _FORMS_OF_NAMED_THINGS: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
@@ -34,7 +34,7 @@ _LANE_KINDS: Final = (
     "none",
 )
 _MARK_WORDS: Final = ("none", "solid", "broken", "curb", "grass", "botts")
-_LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
+_SPEED_LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
 
 
 def roads_of(layout: RoadLayout) -> dict[str, Road]:
@@ -42,16 +42,16 @@ def roads_of(layout: RoadLayout) -> dict[str, Road]:
     texts = dict(layout.roads)
     turns: str | Sequence[str] = layout.turns
     if layout.crossing:
-        texts |= _arm_texts(layout.crossing)
+        texts |= _arm_entries(layout.crossing)
         turns = turns or "all"
     ring: list[tuple[str, int, str, int]] = []
     if layout.roundabout:
-        texts |= _arm_and_ring_texts(layout.roundabout)
+        texts |= _arm_and_ring_entries(layout.roundabout)
         ring = _ring_turns(layout.roundabout)
     if not texts:
         raise UsageError("a layout has roads, a crossing or a roundabout")
     roads: dict[str, Road] = {}
-    for name in _names_after_predecessors(texts):
+    for name in _road_names_each_after_its_predecessor(texts):
         roads[name] = _road(name, texts[name], roads)
     for name in ("crossing", "roundabout"):
         if name in roads:
@@ -62,7 +62,7 @@ def roads_of(layout: RoadLayout) -> dict[str, Road]:
 
 def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
     """Return the name of the road and the number of the lane in a text such as `main -1`. Errors: `UsageError`."""
-    if (found := _LANE.fullmatch(text.strip())) is None:
+    if (found := _ROAD_AND_LANE_NUMBER.fullmatch(text.strip())) is None:
         raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
     name, number = found[1], int(found[2])
     if name not in roads:
@@ -71,7 +71,7 @@ def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int
     return name, number
 
 
-def _names_after_predecessors(texts: Mapping[str, RoadEntry]) -> list[str]:
+def _road_names_each_after_its_predecessor(texts: Mapping[str, RoadEntry]) -> list[str]:
     """Return the names of the roads, each after the road that it continues."""
     order: list[str] = []
     for name in texts:
@@ -104,7 +104,7 @@ def _road(name: str, text: RoadEntry, roads: Mapping[str, Road]) -> Road:
     lanes = [*_lanes(text.lanes, 1, length), *_lanes(text.against, -1, length)]
     limits = [(0.0, text.limit)] if isinstance(text.limit, str) else text.limit or []
     for _, limit in limits:
-        if _LIMIT.fullmatch(limit) is None:
+        if _SPEED_LIMIT.fullmatch(limit) is None:
             raise UsageError(f"road {name}: limit {limit!r}: write a number and mph, km/h or m/s, or 'no limit'")
     _refuse_unknown_words(name, text, lanes)
     return Road(
@@ -221,7 +221,7 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     return turn_roads
 
 
-def _arm_texts(crossroads: Crossroads) -> dict[str, RoadEntry]:
+def _arm_entries(crossroads: Crossroads) -> dict[str, RoadEntry]:
     arms: dict[str, RoadEntry] = {}
     for arm in crossroads.arms:
         angle = _ANGLE_BY_COMPASS_POINT[arm]
@@ -233,7 +233,7 @@ def _arm_texts(crossroads: Crossroads) -> dict[str, RoadEntry]:
     return arms
 
 
-def _arm_and_ring_texts(roundabout: Roundabout) -> dict[str, RoadEntry]:
+def _arm_and_ring_entries(roundabout: Roundabout) -> dict[str, RoadEntry]:
     """Return the arms, and for each arm the part of the ring that begins after it; the ring is driven anticlockwise."""
     ring: dict[str, RoadEntry] = {}
     gap = 10.0 / roundabout.radius  # half of the part of the ring that an arm's junction occupies, as an angle

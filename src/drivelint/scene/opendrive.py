@@ -210,7 +210,7 @@ class _Writer:
                 f'<object type="stopLine" id="{number}" name="stopLine" s="{thing.at!r}" t="{self.hand * thing.off!r}" zOffset="0" '
                 f'orientation="{_ORIENTATIONS[thing.facing]}" {box}/>'
             )
-        width = _width_without_sidewalks_m(road) if thing.width is None else thing.width
+        width = _symmetric_width_without_sidewalks_m(road) if thing.width is None else thing.width
         deep, off = thing.deep / 2, self.hand * thing.off
         corners = [(-deep, -width / 2), (-deep, width / 2), (deep, width / 2), (deep, -width / 2)]
         outline = "".join(
@@ -224,7 +224,7 @@ class _Writer:
         )
 
 
-def _width_without_sidewalks_m(road: Road) -> float:
+def _symmetric_width_without_sidewalks_m(road: Road) -> float:
     """Return twice the width of the wider side of the road, without sidewalks."""
     halves = [
         sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)

@@ -10,7 +10,7 @@ import numpy as np
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.actor import BRAKE_LIGHT_MPS2, CLASSES_WITH_LIGHTS, DT_S, light_states
+from drivelint.scene.actor import BRAKE_LIGHT_DECELERATION_MPS2, CLASSES_WITH_LIGHTS, DT_S, light_states
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -132,6 +132,6 @@ def _indicator_and_brake_light(
         return indicator, light_states(text.brake, t, BRAKE_LIGHTS, f"{who}: brake")
     push, speed = motion.push[indices], np.hypot(motion.vx, motion.vy)[indices]
     strong = push < -_STRONG_BRAKING_MPS2
-    braking = (push < -BRAKE_LIGHT_MPS2) | (speed < _STANDING_MPS)
+    braking = (push < -BRAKE_LIGHT_DECELERATION_MPS2) | (speed < _STANDING_MPS)
     shine = np.where(strong, "strong", np.where(braking, "on", "off"))
     return indicator, [str(word) for word in shine]

@@ -229,7 +229,7 @@ class ActorPath:
 def path_along_lanes(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> ActorPath:
     """Return the path along the middles of these lanes, in the direction of their traffic, with the turns through junctions."""
     parts = []
-    for road_name, number in lanes_with_turns(roads, lanes):
+    for road_name, number in lanes_with_junction_lanes_between(roads, lanes):
         road = roads[road_name]
         lane = road.lane(number)
         s = np.append(np.arange(0.0, road.length, PATH_STEP_M), road.length)
@@ -247,7 +247,9 @@ def path_along_lanes(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]
     return ActorPath.through_points(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def lanes_with_turns(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
+def lanes_with_junction_lanes_between(
+    roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]
+) -> list[tuple[str, int]]:
     """Return the lanes, and between them the lanes of the junctions that connect them."""
     found = list(lanes[:1])
     for (before, n), (behind, m) in pairwise(lanes):

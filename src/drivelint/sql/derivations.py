@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _OCCASION: Final = re.compile(r"^-- occasion: (\w+(?:, \w+)*)$", re.MULTILINE)
 _TABLES_FROM_TOML = {"profile"}  # filled from queries/profiles.toml
-NEEDED_OF_DRIVES: Final = (
+TABLES_NEEDED_FOR_DRIVES: Final = (
     "clock",
     "step",
     "ego_state",
@@ -33,9 +33,9 @@ NEEDED_OF_DRIVES: Final = (
     "recorded",
 )
 """The derived tables that the table `drive` and the command `inspect` read, independently of rules."""
-NEEDED_OF_RULES: Final = (*NEEDED_OF_DRIVES, "pair")
+TABLES_NEEDED_FOR_RULES: Final = (*TABLES_NEEDED_FOR_DRIVES, "pair")
 """The derived tables that the evaluation and the evidence of findings always read, for any rules."""
-NEEDED_OF_RULES_ABOUT_OTHERS: Final = (*NEEDED_OF_RULES, "lost_object")
+TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS: Final = (*TABLES_NEEDED_FOR_RULES, "lost_object")
 """The derived tables that the evaluation reads for rules about other actors than the ego."""
 
 
@@ -81,7 +81,9 @@ def _derivation(table: str) -> Derivation:
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
     sql = file.read_text(encoding="utf-8")
-    reads, needs, occasion = _READS_BY_SQL.find_or_compute(sql, lambda: _reads_needs_occasion(sql, str(file)))
+    reads, needs, occasion = _READS_BY_SQL.find_or_compute(
+        sql, lambda: _tables_read_tables_needed_and_occasion(sql, str(file))
+    )
     return Derivation(table, sql, reads & _file_by_table().keys() - {table}, needs, occasion)
 
 
@@ -89,7 +91,7 @@ _Reads = tuple[frozenset[str], frozenset[str], str]
 _READS_BY_SQL: Final = Memo[_Reads]("derivations", _Reads)
 
 
-def _reads_needs_occasion(sql: str, where: str) -> _Reads:
+def _tables_read_tables_needed_and_occasion(sql: str, where: str) -> _Reads:
     """Return the tables that a SELECT reads, the tables that must have rows for it to return rows, and `Derivation.occasion`.
 
     Errors: `DriveLintError` if the SELECT may return rows although the CTEs of its occasion have none.
@@ -136,7 +138,7 @@ def _table_with_sources(table: str) -> frozenset[str]:
 
 
 def needed_derivations(
-    tables: Iterable[str], further_tables: Iterable[str] = NEEDED_OF_RULES_ABOUT_OTHERS
+    tables: Iterable[str], further_tables: Iterable[str] = TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS
 ) -> list[Derivation]:
     """Return the derivations that fill these tables and `further_tables`, with all tables that they read, in order."""
     return _derivations_with_sources([*tables, *further_tables])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
-LIFETIMES: Final = ("map", "drive", "part", "run")
+TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
 """How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
 one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
@@ -93,7 +93,7 @@ def uniform_memory_errors() -> Iterator[None]:
 
 
 @contextmanager
-def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
+def temporary_database(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
 
     `memory`: None means 80 % of the machine's memory. `threads`: cores that a statement may use; None: all.
@@ -116,7 +116,7 @@ def spill_folder(con: duckdb.DuckDBPyConnection) -> str:
     return str(folder or "")
 
 
-_cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
+_open_cursors_by_connection_id: dict[int, set[duckdb.DuckDBPyConnection]] = {}
 """Id of a connection -> its open cursors: interrupting a connection does not interrupt its cursors."""
 
 
@@ -124,7 +124,7 @@ _cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
 def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a second connection to the database of `con`, which `interrupt` interrupts together with `con`."""
     with con.cursor() as other:
-        mine = _cursors.setdefault(id(con), set())
+        mine = _open_cursors_by_connection_id.setdefault(id(con), set())
         mine.add(other)
         try:
             yield other
@@ -134,7 +134,7 @@ def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection
 
 def interrupt(con: duckdb.DuckDBPyConnection) -> None:
     """Stop the statements that run on a connection and on its cursors; called from another thread."""
-    for each in (con, *_cursors.get(id(con), ())):
+    for each in (con, *_open_cursors_by_connection_id.get(id(con), ())):
         each.interrupt()
 
 
@@ -169,7 +169,7 @@ def one_thread(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
         con.execute(f"SET threads={int(before)}")
 
 
-def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
+def set_and_return_default_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     """Set a database's memory limit to DuckDB's default, 80 % of the machine's memory, and return the limit."""
     con.execute("RESET memory_limit")
     # RESET changes only the value of the setting; SET also informs the buffer manager
@@ -178,7 +178,7 @@ def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     return str(most)
 
 
-def release_memory(con: duckdb.DuckDBPyConnection) -> None:
+def release_memory_and_leave_limit_of_1_byte(con: duckdb.DuckDBPyConnection) -> None:
     """Return unused memory to the system. Afterwards the memory limit is 1 byte: the caller must set it again.
 
     Until DuckDB has to evict blocks, it keeps a scattered record of 200 bytes for every freed block. A limit that is too small makes it
@@ -273,7 +273,7 @@ def arrow_schemas() -> dict[str, pa.Schema]:
     return cached_schemas(create_tables, column_comments())
 
 
-def owned_table(
+def table_with_owner_id(
     name: str, owner_id: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
 ) -> pa.Table:
     """Return a table of `schemas/` from rows or columns, with `owner_id` (the id of the drive or map) as its first column.
@@ -301,9 +301,9 @@ def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
     found = {table: lifetime for lifetime, table in _LIFETIME.findall(_schema_sql())}
     for table in column_comments():
-        if found.get(table) not in LIFETIMES:
+        if found.get(table) not in TABLE_LIFETIMES:
             raise DriveLintError(
-                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(LIFETIMES)} above it"
+                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(TABLE_LIFETIMES)} above it"
             )
     return found
 

@@ -75,7 +75,7 @@ def tables_read(tree: Node) -> Names:
 
 def tables_needing_rows(tree: Node) -> Names:
     """Return tables that must have rows for the SELECT to return rows. The answer may be incomplete, which only costs time."""
-    return _needed_by_query(tree, {}, lateral=False)
+    return _tables_needed_by_query(tree, {}, lateral=False)
 
 
 def has_no_rows_without(tree: Node, ctes: Names) -> bool:
@@ -87,7 +87,7 @@ def has_no_rows_without(tree: Node, ctes: Names) -> bool:
     for node, in_sight in walk(tree):
         if node.get("type") == "BASE_TABLE" and _lower_case(node["table_name"]) in ctes and _is_cte(node, in_sight):
             node["table_name"] = _NAME_FOR_CTES_WITHOUT_ROWS  # one table name replaces all of these CTEs
-    return _NAME_FOR_CTES_WITHOUT_ROWS in _needed_by_query(tree, {}, lateral=False)
+    return _NAME_FOR_CTES_WITHOUT_ROWS in _tables_needed_by_query(tree, {}, lateral=False)
 
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:
@@ -112,42 +112,42 @@ def walk(root: Any) -> Iterator[tuple[Node, Names]]:
             ]
 
 
-def _needed_by_query(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
+def _tables_needed_by_query(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
     """Return the tables that must have rows for a query to return rows.
 
     `ctes`: CTE in scope -> the tables that it needs. `lateral`: the query is right of a join, so it may use columns of the left side.
     """
     own = dict(ctes)
     for entry in _cte_entries(node):
-        own[_lower_case(entry["key"])] = _needed_by_query(entry["value"]["query"]["node"], own, lateral=lateral)
+        own[_lower_case(entry["key"])] = _tables_needed_by_query(entry["value"]["query"]["node"], own, lateral=lateral)
     match node["type"]:
         case "SELECT_NODE" if not _has_row_without_source_rows(node, lateral=lateral):
-            return _needed_by_source(node["from_table"], own, lateral=lateral)
+            return _tables_needed_by_source(node["from_table"], own, lateral=lateral)
         case "SET_OPERATION_NODE" if node["setop_type"].startswith("UNION"):
-            return _needed_by_query(node["left"], own, lateral=lateral) & _needed_by_query(
+            return _tables_needed_by_query(node["left"], own, lateral=lateral) & _tables_needed_by_query(
                 node["right"], own, lateral=lateral
             )
         case "RECURSIVE_CTE_NODE":
-            first = _needed_by_query(node["left"], own, lateral=lateral)
-            return first & _needed_by_query(
+            first = _tables_needed_by_query(node["left"], own, lateral=lateral)
+            return first & _tables_needed_by_query(
                 node["right"], own | {_lower_case(node["cte_name"]): first}, lateral=lateral
             )
     return _NO_NAMES
 
 
-def _needed_by_source(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
+def _tables_needed_by_source(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
     match node["type"], node.get("join_type"), node.get("ref_type"):
         case "BASE_TABLE", _, _:
             name = _lower_case(node["table_name"])
             return ctes[name] if _is_cte(node, ctes) else frozenset({name})
         case "SUBQUERY", _, _:
-            return _needed_by_query(node["subquery"]["node"], ctes, lateral=lateral)
+            return _tables_needed_by_query(node["subquery"]["node"], ctes, lateral=lateral)
         case "JOIN", "INNER" | "SEMI", "REGULAR" | "CROSS" | "ASOF":
-            return _needed_by_source(node["left"], ctes, lateral=lateral) | _needed_by_source(
+            return _tables_needed_by_source(node["left"], ctes, lateral=lateral) | _tables_needed_by_source(
                 node["right"], ctes, lateral=True
             )
         case "JOIN", "LEFT" | "ANTI", "REGULAR" | "ASOF":
-            return _needed_by_source(node["left"], ctes, lateral=lateral)
+            return _tables_needed_by_source(node["left"], ctes, lateral=lateral)
     return _NO_NAMES
 
 
@@ -166,10 +166,12 @@ def _has_row_without_source_rows(node: Node, *, lateral: bool) -> bool:
         for each, _ in walk([items, node["qualify"], node["modifiers"]])
         if each.get("class") == "FUNCTION"
     }
-    return node["having"] is not None or any(name in _aggregates() or name.endswith("_agg") for name in calls)
+    return node["having"] is not None or any(
+        name in _aggregate_function_names() or name.endswith("_agg") for name in calls
+    )
 
 
-def branches(node: Node) -> list[Node]:
+def union_queries(node: Node) -> list[Node]:
     """Return the queries that a UNION or another set operation combines."""
     return [node["left"], node["right"]] if "left" in node else list(node["children"])
 
@@ -179,7 +181,7 @@ def column_name(item: Node) -> str:
     return _lower_case(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
-def offset_of(part: Any) -> int | None:
+def byte_offset_of(part: Any) -> int | None:
     """Return a node's byte offset in the SQL, or that of its first inner node with an offset; None without any offset."""
     todo = [part]
     while todo:
@@ -209,7 +211,7 @@ def _lower_case(name: str) -> str:
 
 
 @cache
-def _aggregates() -> Names:
+def _aggregate_function_names() -> Names:
     """Return DuckDB's aggregates, and the macros of DuckDB and drivelint that call an aggregate.
 
     The aggregates of the spatial extension, whose names all end in `_agg`, are not included.

@@ -136,7 +136,7 @@ class _Walker:
             case "SELECT_NODE":
                 return self._relation_of_select(node, known, outer)
             case "SET_OPERATION_NODE":
-                first, *others = (self.relation_of_query(part, known, outer) for part in syntax.branches(node))
+                first, *others = (self.relation_of_query(part, known, outer) for part in syntax.union_queries(node))
                 return reduce(partial(union_of_relations, by_name="BY_NAME" in node["setop_type"]), others, first)
             case "RECURSIVE_CTE_NODE":
                 return self._relation_of_recursive_cte(node, known, outer)
@@ -266,7 +266,7 @@ class _Walker:
             return NULL
         if value["type"]["id"] != "VARCHAR":
             return None
-        place = LiteralPlace(self._call if self._depth else syntax.offset_of(node), in_macro=bool(self._depth))
+        place = LiteralPlace(self._call if self._depth else syntax.byte_offset_of(node), in_macro=bool(self._depth))
         return PossibleWords(literals={value["value"]: place}, direct=True)
 
     @staticmethod
@@ -356,7 +356,7 @@ class _Walker:
             parameter: _possible_words_by_column().get(parameter) if kind is None else kind for parameter, kind in given
         }
         if not self._depth:
-            self._call = None if call is None else syntax.offset_of(call)
+            self._call = None if call is None else syntax.byte_offset_of(call)
         self._depth += 1
         kind = self.words_of(called.value, Scope(bound=bound))
         self._depth -= 1

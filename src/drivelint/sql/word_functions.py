@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Kinds = Sequence[WordType]
 
-_FUNCTIONS_OF_FIRST_ARGUMENT: Final = (
+_FUNCTIONS_RETURNING_FIRST_ARGUMENT: Final = (
     *(
         "any_value",
         "arg_max",
@@ -55,7 +55,7 @@ def _possible_words_of_concatenation(kinds: Kinds) -> WordType:
 
 
 _POSSIBLE_WORDS_BY_FUNCTION: Final[Mapping[str, Callable[[Kinds], WordType]]] = {
-    **dict.fromkeys(_FUNCTIONS_OF_FIRST_ARGUMENT, lambda kinds: kinds[0]),
+    **dict.fromkeys(_FUNCTIONS_RETURNING_FIRST_ARGUMENT, lambda kinds: kinds[0]),
     **dict.fromkeys(("lag", "lead"), lambda kinds: union([kinds[0], *kinds[2:3]])),
     **dict.fromkeys(("coalesce", "greatest", "least", "ifnull"), union),
     **dict.fromkeys(("list", "array_agg", "list_value", "array_value"), lambda kinds: ListOf(union(kinds))),

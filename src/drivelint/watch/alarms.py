@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 WARM_UP_NS: Final = 5_000_000_000
 """In the first seconds of a window that starts after the log's beginning, some rules lack the past that they need."""
-SAME_REFERENCE_NS: Final = 2_000_000_000
+SAME_REFERENCE_POINT_TOLERANCE_NS: Final = 2_000_000_000
 Key = tuple[str, str, str | None, str | None]
 
 
@@ -59,7 +59,7 @@ class Alarm:
         mine = self.row
         if mine["t_ref_ns"] is not None or row["t_ref_ns"] is not None:
             refs = mine["t_ref_ns"], row["t_ref_ns"]
-            return None not in refs and abs(refs[0] - refs[1]) <= SAME_REFERENCE_NS
+            return None not in refs and abs(refs[0] - refs[1]) <= SAME_REFERENCE_POINT_TOLERANCE_NS
         return bool(row["t_start_ns"] <= self.t_end_ns + gap_ns and row["t_end_ns"] >= mine["t_start_ns"] - gap_ns)
 
 
@@ -89,7 +89,7 @@ class AlarmLog:
         self.alarms: list[Alarm] = []
         self._standing: list[Alarm] = []
 
-    def add_contacts(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
+    def add_contacts_and_return_new_alarms(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
         """Add the contacts in the newest frames, up to the step at `now_ns`, and return the new alarms."""
         new: list[Alarm] = []
         for row in rows:

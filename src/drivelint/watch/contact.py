@@ -26,9 +26,9 @@ OVERLAP_RULE: Final = "ukhc.no-collision"
 JOLT_RULE: Final = "ukhc.contact-signature"
 CONTACT_RULES: Final = (OVERLAP_RULE, JOLT_RULE)
 """The rules on contacts, whose alarms can come before a window is judged."""
-LEAST_EXAMINED_NS: Final = 1_000_000_000
+LEAST_EXAMINED_LOG_SPAN_NS: Final = 1_000_000_000
 """The least length of log that is examined: readers derive values from earlier steps, and boxes must be seen apart before a contact."""
-NEAR_M: Final = 50.0
+MOST_EXAMINED_DISTANCE_M: Final = 50.0
 """Actors whose centres are farther apart than this along x or y are not examined."""
 _JOLT_PARAMS: Final = ("within_m", "tyre_mps2", "jolt_s", "walk_mps")
 _UNKNOWN_COLUMNS: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing_mps")
@@ -51,14 +51,14 @@ class ContactFinder:
         self._con = con
         self._rules = {rule_id: rules_by_id[rule_id] for rule_id in rule_ids}
         bound = Binding(rules_by_id[JOLT_RULE], 0, (params or {}).get(JOLT_RULE, {}))
-        self._values = {"near_m": NEAR_M, **bound.values(_JOLT_PARAMS)}
+        self._values = {"near_m": MOST_EXAMINED_DISTANCE_M, **bound.values(_JOLT_PARAMS)}
         self._statement = statement("watch/contact")
         self._apart: set[tuple[str, str, str]] = set()
 
     def new_contacts(self, trace: Trace, since_ns: int | None) -> list[Row]:
         """Return the contacts at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
-        `trace`: the newest steps and about `LEAST_EXAMINED_NS` before them.
+        `trace`: the newest steps and about `LEAST_EXAMINED_LOG_SPAN_NS` before them.
         """
         tables = {f"_{name}": trace.tables[table] for name, table in _TRACE_TABLES.items()}
         with store.registered(self._con, tables):

@@ -61,7 +61,7 @@ def check_recording(
     return replace(result, halted=told, notes=(*result.notes, told))
 
 
-def report_outcome(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
+def report_outcome_and_return_counts_text(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
     """Report for each alarm whether the whole log confirms it, then the late and the revised verdicts. Return the counts as a text."""
     missed = watch.alarms.assign_findings_and_return_unassigned(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _PR_SET_PDEATHSIG: Final = 1
-GRACE_S: Final = 5.0
+GRACE_BEFORE_KILL_S: Final = 5.0
 """How long a program may take to end before it is killed."""
 
 
@@ -45,16 +45,16 @@ class ChildProgram:
         return self._process.poll()
 
     def wait_or_end(self) -> int | None:
-        """Wait until the program ends, but end it after `GRACE_S`. Return its exit code; None: it did not end by itself."""
+        """Wait until the program ends, but end it after `GRACE_BEFORE_KILL_S`. Return its exit code; None: it did not end by itself."""
         with suppress(subprocess.TimeoutExpired):
-            return self._process.wait(GRACE_S)
+            return self._process.wait(GRACE_BEFORE_KILL_S)
         self.end()
         return None
 
     def end(self) -> None:
-        """Send SIGTERM to the process group, and kill the processes that remain after `GRACE_S`."""
+        """Send SIGTERM to the process group, and kill the processes that remain after `GRACE_BEFORE_KILL_S`."""
         self._send_signal(signal.SIGTERM)
-        until = time.monotonic() + GRACE_S
+        until = time.monotonic() + GRACE_BEFORE_KILL_S
         while self._is_any_process_running() and time.monotonic() < until:
             time.sleep(0.02)
         self._send_signal(signal.SIGKILL)

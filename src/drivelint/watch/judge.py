@@ -99,7 +99,7 @@ class WindowJudge:
         asked = profiles.keys() if options.advise else self.profiles
         self.style_by_profile = {name: profile.style for name, profile in profiles.items()}
         self._stack = ExitStack()
-        self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
+        self._con = self._stack.enter_context(store.temporary_database(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = MemoryLimit(self._con, options.memory)
         # the session writes courses only if it has an observer

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.watch.settled import KEY_COLUMNS, VALUE_COLUMNS
+from drivelint.watch.settled import IDENTIFYING_VERDICT_COLUMNS, OTHER_REPORTED_VERDICT_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -98,7 +98,9 @@ def alarm_outcome(alarm: Alarm) -> Message:
 
 def settled_verdict(row: Row, drive_start_ns: int) -> Message:
     """Return the message of a verdict that is reported before the log's end."""
-    said = {name: _null_if_not_finite(row[name]) for name in (*KEY_COLUMNS, *VALUE_COLUMNS)}
+    said = {
+        name: _null_if_not_finite(row[name]) for name in (*IDENTIFYING_VERDICT_COLUMNS, *OTHER_REPORTED_VERDICT_COLUMNS)
+    }
     return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns), **said}
 
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 READ_TIMEOUT_S: Final = 0.05
 """How long one read waits for new frames."""
-FIRST_WINDOW_NS: Final = NS_PER_S
+FIRST_WINDOW_AFTER_NS: Final = NS_PER_S
 """The log time after which the first window is judged. It shows the ego, and problems of the log or the map."""
 CONTACT_SEARCH_PAUSE_S: Final = 0.05
 """The pause after each search for contacts: without it, the searches would take as much time as the windows."""
@@ -198,7 +198,7 @@ class Watch:
     def _judge_due_windows(self, *, is_over: bool) -> None:
         """Judge the windows that are due, one after another; in the background, unless the source is in step or has ended."""
         is_advanced_by_reads, every_ns = self._source.is_advanced_by_reads, round(self._options.every_s * NS_PER_S)
-        due_ns = every_ns if self._has_begun else min(every_ns, FIRST_WINDOW_NS)
+        due_ns = every_ns if self._has_begun else min(every_ns, FIRST_WINDOW_AFTER_NS)
         # frames that came while a window was judged are judged in one pass, but each step with `WARM_UP_NS` of its past
         most_ns = every_ns if is_advanced_by_reads else self._window_length_ns - WARM_UP_NS
         while not self._is_stopped:
@@ -245,7 +245,7 @@ class Watch:
         """Report the contacts in new frames, once the ego is known."""
         if self._contacts is None or self._drive_start_ns is None:
             return
-        latest = self._window.frames_since(min(frame.t_ns for frame in frames) - contact.LEAST_EXAMINED_NS)
+        latest = self._window.frames_since(min(frame.t_ns for frame in frames) - contact.LEAST_EXAMINED_LOG_SPAN_NS)
         try:
             trace = self._source.latest_trace(latest, self._folder, self._ingest)
             if self._egos != egos_of(trace):
@@ -258,7 +258,7 @@ class Watch:
             self._emit(messages.note(f"contacts are only found in windows: {error}"))
             return
         now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
-        self._report_alarms(self.alarms.add_contacts(rows, now_ns), now_ns, self._drive_start_ns)
+        self._report_alarms(self.alarms.add_contacts_and_return_new_alarms(rows, now_ns), now_ns, self._drive_start_ns)
 
     def _deferred_judgement(self) -> Callable[[], _WindowOutcome]:
         """Return a function that judges the present window. It may be called in another thread, and raises nothing."""
@@ -344,7 +344,7 @@ class Watch:
             if self._server is not None:
                 self._server.publish_alarm(said[-1])
         for trigger in self._triggers:
-            if (trouble := trigger.run_for_alarms(said)) is not None:
+            if (trouble := trigger.run_for_alarms_and_return_note(said)) is not None:
                 self._emit(messages.note(trouble))
         halting = next((alarm for alarm in alarms if self._is_halting_alarm(alarm)), None)
         if halting is not None:

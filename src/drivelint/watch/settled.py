@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 SETTLE_DELAY_NS: Final = 15 * NS_PER_S
 """The delay from the end of an episode to the report of its verdict: the end of an overtake, which takes seconds, is judged, too."""
-KEY_COLUMNS: Final = ("rule_id", "ego_id", "profile", "object_id", "t_ref_ns", "t_start_ns")
+IDENTIFYING_VERDICT_COLUMNS: Final = ("rule_id", "ego_id", "profile", "object_id", "t_ref_ns", "t_start_ns")
 """The columns that identify a verdict. Numbers of occurrences and reference points do not: they depend on where the window starts."""
-VALUE_COLUMNS: Final = (
+OTHER_REPORTED_VERDICT_COLUMNS: Final = (
     "verdict", "severity", "t_end_ns", "t_worst_ns", "reason_code", "reason", "observed", "required", "margin", "unit", "near_miss",
     "n_expected", "n_judged", "x_m", "y_m", "lanelet_id",
 )  # fmt: skip
 """The columns of a message in addition to the key."""
-_COMPARED_COLUMNS: Final = tuple(name for name in VALUE_COLUMNS if name != "reason")
+_COMPARED_COLUMNS: Final = tuple(name for name in OTHER_REPORTED_VERDICT_COLUMNS if name != "reason")
 Key = tuple[Any, ...]
 
 
@@ -44,7 +44,9 @@ class SettledVerdicts:
             begin = row["t_start_ns"] if row["t_ref_ns"] is None else min(row["t_start_ns"], row["t_ref_ns"])
             begins_here = begin > known_from_ns or known_from_ns == window.t_start_ns
             if begins_here and row["t_end_ns"] + SETTLE_DELAY_NS < window.t_end_ns:
-                self._said[key] = {name: row[name] for name in (*KEY_COLUMNS, *VALUE_COLUMNS)}
+                self._said[key] = {
+                    name: row[name] for name in (*IDENTIFYING_VERDICT_COLUMNS, *OTHER_REPORTED_VERDICT_COLUMNS)
+                }
                 found.append(row)
         return found
 
@@ -78,7 +80,7 @@ def _verdicts_with_unique_key(verdicts: pa.Table) -> dict[Key, Row]:
 
 
 def _verdict_key(row: Row) -> Key:
-    return tuple(row[name] for name in KEY_COLUMNS)
+    return tuple(row[name] for name in IDENTIFYING_VERDICT_COLUMNS)
 
 
 def _is_same_verdict(earlier: Row, later: Row) -> bool:

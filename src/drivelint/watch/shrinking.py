@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from drivelint.watch.alarms import Key
     from drivelint.watch.judge import JudgedWindow
 
-SLOPE_SPAN_NS: Final = 1_000_000_000
+MARGIN_SLOPE_SPAN_NS: Final = 1_000_000_000
 """The time before the newest step from which the rate of change of a margin is computed."""
 
-MOST_TIME_TO_ZERO_S: Final = 60.0
+MOST_TIME_UNTIL_MARGIN_IS_ZERO_S: Final = 60.0
 """A margin that would reach 0 later than this counts as constant: the last digits of a constant margin may vary."""
 
 
@@ -42,8 +42,8 @@ class ShrinkingMargins:
             if not len(t_ns):
                 continue
             rule = rules[row["rule_id"]]
-            last = t_ns > t_ns[-1] - SLOPE_SPAN_NS
-            is_now = t_ns[-1] >= window.t_end_ns - SLOPE_SPAN_NS // 2
+            last = t_ns > t_ns[-1] - MARGIN_SLOPE_SPAN_NS
+            is_now = t_ns[-1] >= window.t_end_ns - MARGIN_SLOPE_SPAN_NS // 2
             is_near = rule.near_margin is not None and 0 <= margin[-1] < rule.near_margin
             if not (is_now and is_near):
                 continue
@@ -51,7 +51,7 @@ class ShrinkingMargins:
             if key in self._open or last.sum() < 2:
                 continue
             per_s = np.polyfit((t_ns[last] - t_ns[-1]) / 1e9, margin[last], 1)[0]
-            if per_s >= 0 or -margin[-1] / per_s > MOST_TIME_TO_ZERO_S:
+            if per_s >= 0 or -margin[-1] / per_s > MOST_TIME_UNTIL_MARGIN_IS_ZERO_S:
                 seen.pop(key)
                 continue
             found.append({

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-LEAST_PAUSE_S: Final = 1.0
+LEAST_PAUSE_BETWEEN_STARTS_S: Final = 1.0
 """The least number of seconds between two starts of one command; alarms in between are not passed on."""
 MOST_SIMULTANEOUS_RUNS: Final = 4
 """The most simultaneous runs of one command."""
@@ -36,10 +36,10 @@ class Trigger:
     n_left_out: int = 0
     """Alarms for which the command was not started."""
     _n_told: int = 0
-    _last_s: float = -LEAST_PAUSE_S
+    _last_s: float = -LEAST_PAUSE_BETWEEN_STARTS_S
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
-    def run_for_alarms(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
+    def run_for_alarms_and_return_note(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
         """Start the command once for the alarms of its rules, unless it is started too often.
 
         Return a note: an error, or the number of alarms that were left out before; None: there is nothing to report.
@@ -49,7 +49,7 @@ class Trigger:
             return None
         now = time.monotonic()
         self._running = [each for each in self._running if each.poll() is None]
-        if now - self._last_s < LEAST_PAUSE_S or len(self._running) >= MOST_SIMULTANEOUS_RUNS:
+        if now - self._last_s < LEAST_PAUSE_BETWEEN_STARTS_S or len(self._running) >= MOST_SIMULTANEOUS_RUNS:
             self.n_left_out += len(mine)
             return None
         self._last_s = now
@@ -70,14 +70,14 @@ class Trigger:
         n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
         if not n:
             return None
-        limits = f"at most once in {LEAST_PAUSE_S:g} s, and {MOST_SIMULTANEOUS_RUNS} run at a time"
+        limits = f"at most once in {LEAST_PAUSE_BETWEEN_STARTS_S:g} s, and {MOST_SIMULTANEOUS_RUNS} run at a time"
         return f"--on: {self.command[0]} was not started for {plural(n, 'alarm')}: it starts {limits}"
 
     def wait_for_running_commands(self) -> None:
-        """Wait up to `LEAST_PAUSE_S` for each command that still runs; after that, leave it running."""
+        """Wait up to `LEAST_PAUSE_BETWEEN_STARTS_S` for each command that still runs; after that, leave it running."""
         for process in self._running:
             with suppress(subprocess.TimeoutExpired):
-                process.wait(LEAST_PAUSE_S)
+                process.wait(LEAST_PAUSE_BETWEEN_STARTS_S)
 
 
 def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected_rules: Mapping[str, Rule]) -> list[Trigger]:

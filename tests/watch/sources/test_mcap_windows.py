@@ -10,7 +10,7 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 from drivelint.watch.sources.mcap_file import McapSource
-from drivelint.watch.sources.mcap_memory import MOST_FIRST_MESSAGES
+from drivelint.watch.sources.mcap_memory import MOST_KEPT_FIRST_MESSAGES
 from tests.formats.foxglove import foxglove_log as scenes
 from tests.formats.logs import at, read
 from tests.formats.osi import osi_file, osi_log
@@ -151,7 +151,7 @@ def test_a_report_that_was_sent_often_is_carried_in_part(tmp_path: Path) -> None
 
 def test_autoware(tmp_path: Path) -> None:
     """The parameters of the vehicle were sent once, after many others; a light that was seen early is not carried on."""
-    others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_FIRST_MESSAGES + 50)]
+    others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_KEPT_FIRST_MESSAGES + 50)]
     found = [
         *others,
         *autoware.parameters(T0 + 0.01, **autoware.PARAMETERS),

@@ -17,7 +17,7 @@ import shapely
 
 from drivelint.formats import safe_xml
 from drivelint.road.boundary_lanes import signal_row
-from drivelint.road.lane_geometry import FARTHEST_M
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M
 from drivelint.road.signcodes import signal_kind, turns_of_light_direction
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ def points(parent: etree._Element | None) -> Floats:
     both = np.array([[safe_xml.number_or_nan(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(
         -1, 2
     )
-    bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(both) < LARGEST_COORDINATE_M).all(axis=1))
     if len(bad):
         raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
     return both

@@ -15,7 +15,7 @@ from drivelint.formats.d123.map_layers import Intersection, Lane, LaneGroup, Map
 from drivelint.formats.d123.markings import lane_marks
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
-from drivelint.road.line_heights import heights_beside
+from drivelint.road.line_heights import line_heights_closest_to_points
 from drivelint.road.overlapping_lanes import mark_junctions
 from drivelint.road.quality import MapQuality
 
@@ -201,4 +201,6 @@ def _set_heights(built: Sequence[BoundedLane], lanes: Mapping[int, Lane], offset
         source = lanes[int(lane.lanelet_id)]
         pairs = ((source.left_boundary, lane.line.left), (source.right_boundary, lane.line.right))
         if all(bound.shape[1] == 3 for bound, _ in pairs):
-            lane.z = np.mean([heights_beside(bound, points - offset) for bound, points in pairs], axis=0)
+            lane.z = np.mean(
+                [line_heights_closest_to_points(bound, points - offset) for bound, points in pairs], axis=0
+            )

@@ -10,7 +10,7 @@ from drivelint.formats.d123 import facts
 from drivelint.formats.d123.map_layers import RoadLineFeatures
 from drivelint.formats.d123.markings import RoadLine
 from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
-from drivelint.road.quality import SIGNS_UNMAPPED
+from drivelint.road.quality import SIGNS_UNMAPPED_CHECK
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -83,7 +83,7 @@ def _is_crossing_on_level(crossing: dict[str, Any], lane: BoundedLane, height_m:
 def report_missing_content(layers: MapLayers, about: facts.DatasetFacts, quality: MapQuality) -> None:
     """Report the gaps of a map of 123D: missing signs, layers that are not read, and estimated bounds of lanes."""
     message = "a map of 123D has no signs: the right of way at a junction without a light is not known"
-    quality.add(SIGNS_UNMAPPED, "info", None, message)
+    quality.add(SIGNS_UNMAPPED_CHECK, "info", None, message)
     counts = {name: layers.n_objects(name) for name in facts.LAYER_NUMBERS if name not in _READ_LAYERS}
     unread = [f"{n} of {name.lower().replace('_', ' ')}" for name, n in counts.items() if n]
     if unread:

@@ -344,7 +344,7 @@ def _speed_limits(
             speeds.append(SpeedLimit(start, None, is_stated=True))
         else:
             limit = _limit_mps(speed)
-            posted = None if limit is None else quality.posted_limit(limit)
+            posted = None if limit is None else quality.limit_unless_placeholder(limit)
             speeds.append(SpeedLimit(start, posted, is_stated=True, readable=posted is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"

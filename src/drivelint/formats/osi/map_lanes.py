@@ -20,7 +20,7 @@ from drivelint.formats.osi.schema import message_class
 from drivelint.road.boundary_lanes import build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.lane_geometry import resampled, stations
-from drivelint.road.line_heights import heights_beside
+from drivelint.road.line_heights import line_heights_closest_to_points
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     }
     heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
-        lane.z = heights_beside(heights[lane.lanelet_id], lane.line.centre - request.offset)
+        lane.z = line_heights_closest_to_points(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option takes precedence over the side that the lanes show
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
@@ -92,7 +92,8 @@ def _logical_by_physical(
         points = resampled(drawn.centre_line, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
         heights = [
-            heights_beside(logical[names[a]].centre_line, points[[p], :2])[0] for p, a in zip(over, under, strict=True)
+            line_heights_closest_to_points(logical[names[a]].centre_line, points[[p], :2])[0]
+            for p, a in zip(over, under, strict=True)
         ]
         level = np.abs(points[over, 2] - heights)
         same = level < _SAME_ROAD_HEIGHT_M

@@ -12,7 +12,7 @@ import numpy as np
 
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.road.boundary_lanes import BoundedLane, Mark
-from drivelint.road.lane_geometry import FARTHEST_M, UnbuildableError, resampled
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M, UnbuildableError, resampled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -136,7 +136,7 @@ def _side_points(boundary_ids: Iterable[Any], bounds: Mapping[int, Any], side: s
         line = bounds[name].boundary_line
         rows = [(p.position.x, p.position.y, p.position.z, p.s_position) for p in line]
         points = np.array(rows, np.float64).reshape(-1, 4)
-        if len(points) < 2 or not (np.abs(points) < FARTHEST_M).all():
+        if len(points) < 2 or not (np.abs(points) < LARGEST_COORDINATE_M).all():
             raise UnbuildableError(f"its {side} boundary {name} has fewer than two points with finite coordinates")
         parts.append(points)
     side_points = np.vstack(parts)

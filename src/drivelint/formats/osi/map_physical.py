@@ -14,7 +14,7 @@ import shapely
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.map_logical import MAX_LINK_GAP_M
 from drivelint.road.boundary_lanes import BoundedLane, both_marks
-from drivelint.road.lane_geometry import FARTHEST_M, UnbuildableError, resampled, stations
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M, UnbuildableError, resampled, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -87,7 +87,7 @@ def _physical_lane(lane: Any, bounds: Mapping[int, Any], *, omits_false: bool) -
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
         raise UnbuildableError(f"it has {lacks} and therefore no width")
     centre = _xyz(classification.centerline)
-    if not all((np.abs(points) < FARTHEST_M).all() for points in (centre, *lines[0], *lines[1])):
+    if not all((np.abs(points) < LARGEST_COORDINATE_M).all() for points in (centre, *lines[0], *lines[1])):
         raise UnbuildableError("a point of it has an impossible coordinate")
     if len(centre) < 2:
         if any(i.value not in bounds for side in ids for i in side):

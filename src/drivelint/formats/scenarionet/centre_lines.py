@@ -14,7 +14,7 @@ import shapely
 
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import point_array
-from drivelint.road.lane_geometry import FARTHEST_M, stations
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M, stations
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -93,7 +93,7 @@ def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, Cent
 
 
 def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats, *, heights: bool) -> CentreLine:
-    if line.shape[1] < 2 or not (np.abs(line[:, :2]) < FARTHEST_M).all():
+    if line.shape[1] < 2 or not (np.abs(line[:, :2]) < LARGEST_COORDINATE_M).all():
         raise PickleError("its centre line has a point without a place")
     line = line[np.r_[True, np.hypot(*np.diff(line[:, :2], axis=0).T) > 0.01]]
     if len(line) < 2:
@@ -139,7 +139,7 @@ def measure_bound_distances(lanes: Mapping[str, CentreLine], scenario: Scenario)
         for name, lane in lanes.items():
             if "polygon" in lane.feature:
                 outline = point_array(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
-                if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
+                if len(outline) > 3 and (np.abs(outline) < LARGEST_COORDINATE_M).all():
                     _measure_to_outline(lane, shapely.Polygon(outline))
         return
     lines = {
@@ -161,7 +161,7 @@ def measure_bound_distances(lanes: Mapping[str, CentreLine], scenario: Scenario)
 
 def _line_of_feature(feature: Mapping[str, Any], name: str) -> shapely.LineString:
     line = point_array(feature["polyline"], f"map_features[{name[:100]!r}]['polyline']")[:, :2]
-    sound = len(line) > 1 and bool((np.abs(line) < FARTHEST_M).all())
+    sound = len(line) > 1 and bool((np.abs(line) < LARGEST_COORDINATE_M).all())
     return shapely.LineString(line) if sound else shapely.LineString()
 
 

@@ -10,7 +10,7 @@ import shapely
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import number_array, point_array
 from drivelint.road.boundary_lanes import signal_row
-from drivelint.road.lane_geometry import FARTHEST_M
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M
 from drivelint.road.tables import crossing_row
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def _place_on_map(value: Any, offset: tuple[float, float]) -> Floats | None:
         place = number_array(value, "a place").reshape(-1)[:2]
     except PickleError:
         return None
-    return place + offset if len(place) == 2 and bool((np.abs(place) < FARTHEST_M).all()) else None
+    return place + offset if len(place) == 2 and bool((np.abs(place) < LARGEST_COORDINATE_M).all()) else None
 
 
 def _report_signals_without_lane(names: list[str], kind: str, quality: MapQuality) -> None:
@@ -111,7 +111,7 @@ def _crossing_rows(
             outline = point_array(feature.get("polygon"), f"map_features[{name[:100]!r}]['polygon']")[:, :2]
         except PickleError:
             outline = np.empty((0, 2))
-        if len(outline) < 3 or not (np.abs(outline) < FARTHEST_M).all():
+        if len(outline) < 3 or not (np.abs(outline) < LARGEST_COORDINATE_M).all():
             quality.add("invalid_lane", "error", name, f"crossing {name} is left out: it has no outline")
             continue
         area = shapely.Polygon(outline + offset).buffer(0.0)

@@ -28,7 +28,7 @@ from drivelint.road.boundary_lanes import (
     map_from_bounds,
 )
 from drivelint.road.driving_side import choose_side
-from drivelint.road.lane_geometry import FARTHEST_M
+from drivelint.road.lane_geometry import LARGEST_COORDINATE_M
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ def _bounded_lane(
     inside = edge.get("function") == "internal"
     # inside a junction the speed is what the bend allows, not a limit
     is_default = imported is not None and imported.has_default_limit(element, edge, limit)
-    posted = None if inside or is_default else quality.posted_limit(limit)
+    posted = None if inside or is_default else quality.limit_unless_placeholder(limit)
     return BoundedLane(
         str(element.attrib["id"]), left=_parallel_line(middle, half), right=_parallel_line(middle, -half),
         kind=kind, drivable=kind in _DRIVABLE_KINDS,
@@ -205,7 +205,7 @@ def _lane_kind(allow: str | None, disallow: str | None) -> str:
 def _shape_points(shape: str) -> Floats:
     """Return the points (n, 2) of a shape, without heights and repeated points. Errors: `ValueError` for an invalid shape."""
     points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
-    if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
+    if points.shape[1:] != (2,) or not (np.abs(points) < LARGEST_COORDINATE_M).all():
         raise ValueError("its shape is not a list of points x,y")
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-3]]
     if len(points) < 2:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.result.text import closing_words, seconds
+from drivelint.result.text import closing_speed_words, seconds
 
 if TYPE_CHECKING:
     from drivelint.result.text import Row
@@ -32,7 +32,9 @@ def speeds_before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, 
     said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
     # a scene does not contain every step: the closing speed may be from a later step than `last`
     nearing = (
-        "" if contact["closing_mps"] is None else f"{closing_words(contact['closing_mps'])} just before the contact"
+        ""
+        if contact["closing_mps"] is None
+        else f"{closing_speed_words(contact['closing_mps'])} just before the contact"
     )
     told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
     return {

@@ -27,17 +27,17 @@ ASSERTION_TITLES: Final = (
 )
 """The conditions that the runtime assertions require, in the order of `overtake_record.stretches`."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
-_VERDICT_OF_ASSERTION: Final = {"nobody": "not_applicable"}
+_VERDICT_BY_ASSERTION_WORD: Final = {"nobody": "not_applicable"}
 _LEAST_LABEL_DISTANCE_PERCENT: Final = 20.0  # percent: the width of a label on a phone
-_LEAST_BAND_PERCENT: Final = 0.6  # percent: the least width of a band
+_LEAST_BAND_WIDTH_PERCENT: Final = 0.6  # percent: the least width of a band
 _VERDICTS_WORST_FIRST: Final = ("fail", "unknown", "pass", "nobody")
-_ZONE_STARTS_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
+_SPARE_TIMES_AT_ZONE_STARTS_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
 _DOT_SHAPE_PER_PROFILE: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
-_NAMED_UP_TO_OVERTAKES: Final = 10
-_NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
+_NAMES_SHOWN_UP_TO_N_OVERTAKES: Final = 10
+_CELL_OF_PROFILE_NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIME_COLUMNS: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
-MOST_SHOWN_SDA_M: Final = 2000.0
+MOST_SHOWN_SAFE_DISTANCE_AHEAD_M: Final = 2000.0
 """A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
 _HISTOGRAM_BINS: Final = 12
@@ -68,7 +68,7 @@ def overtake_views(
 
 
 def _least_spare_sort_key(row: Row) -> tuple[float, str, str, int]:
-    spare = [max(p["spare_m"], -MOST_SHOWN_SDA_M) for p in row["profiles"] if p["spare_m"] is not None]
+    spare = [max(p["spare_m"], -MOST_SHOWN_SAFE_DISTANCE_AHEAD_M) for p in row["profiles"] if p["spare_m"] is not None]
     return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
 
 
@@ -79,7 +79,7 @@ def _overtake_view(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str
     return {
         "row": row,
         "time": seconds(row["t0_ns"], start_ns),
-        "cells": [_profile_cell(cells.get(profile, _NOT_COMPUTED)) for profile in profiles],
+        "cells": [_profile_cell(cells.get(profile, _CELL_OF_PROFILE_NOT_COMPUTED)) for profile in profiles],
         "stages": stages,
         "rows": [_assertion_row(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
         if stages
@@ -96,8 +96,8 @@ def _overtake_view(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str
 
 
 def _profile_cell(p: Row) -> Row:
-    """Return a profile's row with `is_far`: its safe distance ahead exceeds `MOST_SHOWN_SDA_M`, so the page does not print it."""
-    return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > MOST_SHOWN_SDA_M}
+    """Return a profile's row with `is_far`: its safe distance ahead exceeds `MOST_SHOWN_SAFE_DISTANCE_AHEAD_M`, so it is not printed."""
+    return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > MOST_SHOWN_SAFE_DISTANCE_AHEAD_M}
 
 
 def _axis_labels(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
@@ -129,10 +129,10 @@ def _assertion_row(n: int, stretches: Sequence[Row], stages: Sequence[str], cloc
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
         verdict = min((said for said, _ in mine), key=_VERDICTS_WORST_FIRST.index)
         deep = max((m for _, m in mine if m is not None), default=None)
-        cells.append((_VERDICT_OF_ASSERTION.get(verdict, verdict), deep))
+        cells.append((_VERDICT_BY_ASSERTION_WORD.get(verdict, verdict), deep))
     runs: list[list[Any]] = []
     for s in stretches:
-        said = _VERDICT_OF_ASSERTION.get(s["said"][n], s["said"][n])
+        said = _VERDICT_BY_ASSERTION_WORD.get(s["said"][n], s["said"][n])
         if runs and runs[-1][0] == said:
             runs[-1][2] = s["t_end_ns"]
         else:
@@ -140,9 +140,13 @@ def _assertion_row(n: int, stretches: Sequence[Row], stages: Sequence[str], cloc
     ends = [start for _, start, _ in runs[1:]] + [runs[-1][2]]
     bands = []
     for (said, start, last), end in zip(runs, ends, strict=True):
-        a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _LEAST_BAND_PERCENT), 100.0)
+        a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _LEAST_BAND_WIDTH_PERCENT), 100.0)
         bands.append(
-            (said, percent(min(a, 100.0 - _LEAST_BAND_PERCENT)), percent(b - min(a, 100.0 - _LEAST_BAND_PERCENT)))
+            (
+                said,
+                percent(min(a, 100.0 - _LEAST_BAND_WIDTH_PERCENT)),
+                percent(b - min(a, 100.0 - _LEAST_BAND_WIDTH_PERCENT)),
+            )
         )
     return {"title": ASSERTION_TITLES[n], "cells": cells, "bands": bands}
 
@@ -153,7 +157,7 @@ def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[
         (row, p)
         for row in records
         for p in row["profiles"]
-        if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= MOST_SHOWN_SDA_M
+        if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= MOST_SHOWN_SAFE_DISTANCE_AHEAD_M
     ]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
@@ -181,7 +185,7 @@ def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[
             }
             for row, p in known
         ],
-        "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _NAMED_UP_TO_OVERTAKES else [],
+        "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _NAMES_SHOWN_UP_TO_N_OVERTAKES else [],
         "shapes": list(shapes.items()),
         "speed": number(v, "m/s"),
         "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,
@@ -197,7 +201,7 @@ def _plot_label(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
 
 def _zone_areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
     """Return the zones from bottom to top: name, path, and the position of its letter (None if the zone is too thin for it)."""
-    floors = [-far, *(v * s for s in _ZONE_STARTS_S), 2 * far]
+    floors = [-far, *(v * s for s in _SPARE_TIMES_AT_ZONE_STARTS_S), 2 * far]
     drawn: list[tuple[str, str, tuple[str, str] | None]] = []
     for zone, low, high in zip("ABCD", floors[:-1], floors[1:], strict=True):
         corners = [(0.0, low), (far, low + far), (far, high + far), (0.0, high)]
@@ -228,11 +232,13 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
         "bars": bars,
         "x_ticks": x_ticks,
         "y_ticks": y_ticks,
-        "rows": [_zone_counts(name, records) for name in profiles],
+        "rows": [_opportunity_counts_by_zone(name, records) for name in profiles],
     }
 
 
-def _zone_counts(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
+def _opportunity_counts_by_zone(
+    profile: str, records: Sequence[Row]
+) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
     """Return a profile with the numbers of opportunities taken and not taken in zones A to D, and in an unknown zone."""
     n = Counter((row["zone"], row["taken"]) for row in records if row["profile"] == profile)
     *known, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))

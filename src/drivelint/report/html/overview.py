@@ -10,7 +10,7 @@ from drivelint.report.outcome import headline
 from drivelint.report.worst_first import certainty_rank, is_contact, moment_ns, worst_time_words
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import closing_words, ego_name, measure, non_breaking, seconds
+from drivelint.result.text import closing_speed_words, ego_name, measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _MOST_NAMED_CONTACTS: Final = 4
 _LEAST_KM_FOR_RATES: Final = 100.0
-_SUMMARIES_UP_TO_DRIVES: Final = 6
+_DRIVE_SUMMARIES_UP_TO_N_DRIVES: Final = 6
 _MOST_NAMED_PARTIES: Final = 6
 
 
@@ -53,7 +53,7 @@ def contact_summary(result: Result, lines: Sequence[FindingLine], rules: Mapping
             "" if worst is None else worst_time_words(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
         )
         deep = "" if worst is None else f", {measure(-worst['observed'], 'm')} deep{non_breaking(later)}"
-        speed = "" if first["closing_mps"] is None else f", {closing_words(first['closing_mps'])}"
+        speed = "" if first["closing_mps"] is None else f", {closing_speed_words(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = (
             f"{who} at {non_breaking(seconds(moment_ns(first, rules), starts[first['drive_id']]))}{speed}{deep}{where}"
@@ -109,14 +109,14 @@ def broken_rules(
             "n_drives": len({row["drive_id"] for row in rows}),
             "n_fail": verdicts[rule_id]["fail"],
             "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
-            "worst": min(shown.get(rule_id, []), key=_margin_of_line, default=None),
+            "worst": min(shown.get(rule_id, []), key=_margin_of_finding_line, default=None),
         }
         for rule_id, rows in counts.group_rows(events, lambda row: row["rule_id"]).items()
     ]
     return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
 
 
-def _margin_of_line(line: FindingLine) -> float:
+def _margin_of_finding_line(line: FindingLine) -> float:
     return float("-inf") if line.row["margin"] is None else line.row["margin"]
 
 
@@ -152,7 +152,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
     `who`: the vehicles and people that the findings are about.
     """
     told = []
-    for section in sections if n_drives <= _SUMMARIES_UP_TO_DRIVES else ():
+    for section in sections if n_drives <= _DRIVE_SUMMARIES_UP_TO_N_DRIVES else ():
         who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
         summary = {
             "drive_id": section["drive_id"],

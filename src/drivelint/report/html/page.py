@@ -13,12 +13,12 @@ from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
 from drivelint.report.html.explanations import glossary_entries, notes_on_published_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
-from drivelint.report.html.overtakes import MOST_SHOWN_SDA_M, overtake_views, overtaking_opportunities
+from drivelint.report.html.overtakes import MOST_SHOWN_SAFE_DISTANCE_AHEAD_M, overtake_views, overtaking_opportunities
 from drivelint.report.html.pictures import add_pictures, cameras_by_moment
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
-    can_be_provided,
+    can_missing_data_be_provided,
     reason_groups,
     summarise_reasons,
     verdict_reason,
@@ -28,7 +28,7 @@ from drivelint.report.html.road import DrawnMaps
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.report.html.worst_moment import MomentEvidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import one_per_event_and_status, rule_counts
+from drivelint.report.outcome import one_finding_per_event_and_status, rule_counts
 from drivelint.report.same_contact import findings_of_same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
@@ -53,10 +53,10 @@ MAX_CHARTS: Final = 150
 """The page shows the measured values over time of this many of the worst findings and near misses."""
 MAX_DRIVE_SECTIONS: Final = 60
 """This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
-UNFOLDED_UP_TO_DRIVES: Final = 3
+UNFOLDED_SECTIONS_UP_TO_N_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
 
-BRIEF_ABOVE_DRIVES: Final = 20
+BRIEF_TIMELINES_ABOVE_N_DRIVES: Final = 20
 """If the result has more drives, the timelines name the rules that were always kept instead of drawing them."""
 
 _VERDICT_WORDS: Final = {
@@ -74,7 +74,7 @@ def content(result: Result) -> dict[str, Any]:
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
     told = counts.verdict_counts_by(result.verdicts, "drive_id")
-    counted = one_per_event_and_status(result.gate, result.findings.to_pylist())
+    counted = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
     by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
     rows = _worst_findings_and_near_misses(result, rules)
     shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
@@ -95,7 +95,7 @@ def content(result: Result) -> dict[str, Any]:
             timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
             incidents(listed.get(row["drive_id"], []), drawn, row),
             involved_actors(listed.get(row["drive_id"], []), scenes),
-            unfolded=len(drives) <= UNFOLDED_UP_TO_DRIVES,
+            unfolded=len(drives) <= UNFOLDED_SECTIONS_UP_TO_N_DRIVES,
         )
         for row in drives
         if row["drive_id"] in shown
@@ -129,7 +129,7 @@ def content(result: Result) -> dict[str, Any]:
         "n_overtakes": result.overtakes.num_rows,
         "gate": gate_summary(result.gate, [row["finding_id"] for row in counted]),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
-        "n_assumed": counts.count_assuming(result.verdicts, "line_of_sight"),
+        "n_assumed": counts.count_verdicts_assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
         "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
         "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
@@ -158,11 +158,11 @@ def content(result: Result) -> dict[str, Any]:
         ],
         "sections": sections,
         "n_charts": MAX_CHARTS,
-        "brief": len(drives) > BRIEF_ABOVE_DRIVES,
+        "brief": len(drives) > BRIEF_TIMELINES_ABOVE_N_DRIVES,
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
-        "far_m": MOST_SHOWN_SDA_M,
+        "far_m": MOST_SHOWN_SAFE_DISTANCE_AHEAD_M,
         "overtakes": overtake_views(
             result.overtakes.to_pylist(), starts, {p for ps in result.rules["profiles"].to_pylist() for p in ps}
         ),
@@ -295,13 +295,15 @@ def _rules_with_counts(result: Result, rules: Mapping[str, Row]) -> list[dict[st
 
 def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules by pack: first the rules that were judged in at least one drive, then the others, folded by reason."""
-    why = _reasons_of_idle_rules(result.verdicts)
+    why = _reasons_of_rules_judged_in_no_drive(result.verdicts)
     order = ("not_applicable", "unknown")
     groups = []
     for pack, mine in group_rows(_rules_with_counts(result, rules), lambda rule: rule["pack"]).items():
         judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in mine)
         idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
-        folds = group_rows(idle, lambda item: (item[0], item[1].kind, _words_on_idle_rule(item[2]["verdicts"])))
+        folds = group_rows(
+            idle, lambda item: (item[0], item[1].kind, _words_on_rule_judged_in_no_drive(item[2]["verdicts"]))
+        )
         weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), *item[0][1:]))
         groups.append(
             {
@@ -322,14 +324,14 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     return groups
 
 
-def _words_on_idle_rule(verdict_counts: Mapping[str, int]) -> str:
+def _words_on_rule_judged_in_no_drive(verdict_counts: Mapping[str, int]) -> str:
     """Return in words why a rule was judged in no drive; it may be not applicable for some egos and unknown for others."""
     if not verdict_counts["unknown"]:
         return "never applied"
     return "not applicable or not judged" if verdict_counts["not_applicable"] else "not judged"
 
 
-def _reasons_of_idle_rules(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
+def _reasons_of_rules_judged_in_no_drive(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     """Return verdict and reason of the rules that were judged in no drive, because they never applied or data are missing."""
     rows = counts.distinct_rows(verdicts, ["rule_id", "verdict", "reason_code", "cause_code", "reason"])
     rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))
@@ -337,7 +339,8 @@ def _reasons_of_idle_rules(verdicts: pa.Table) -> dict[str, tuple[str, VerdictRe
         rule_id: (told[0]["verdict"], verdict_reason(told[0]))
         for rule_id, told in group_rows(rows, lambda row: row["rule_id"]).items()
         if all(
-            row["verdict"] == "not_applicable" or (row["verdict"] == "unknown" and can_be_provided(row["reason_code"]))
+            row["verdict"] == "not_applicable"
+            or (row["verdict"] == "unknown" and can_missing_data_be_provided(row["reason_code"]))
             for row in told
         )
     }

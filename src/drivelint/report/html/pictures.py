@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Moment = tuple[str, int]
 _MINUS: Final = "\u2212"
-_SAME_MOMENT_NS: Final = 5_000_000
+_SAME_MOMENT_TOLERANCE_NS: Final = 5_000_000
 """A frame nearer to the moment than this is labelled "at the moment": times are printed in hundredths of a second."""
 
 
@@ -30,7 +30,7 @@ def cameras_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
         shown.setdefault((drive_id, t_ns), []).append(
             {
                 "camera": camera,
-                "shots": [_shot_for_page(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])],
+                "shots": [_picture_for_page(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])],
             }
         )
     return shown
@@ -59,18 +59,18 @@ def add_pictures(
                 each["cameras"], anchors[moment] = cameras[moment], each["anchor"]
 
 
-def _shot_for_page(row: dict[str, Any]) -> dict[str, Any]:
+def _picture_for_page(row: dict[str, Any]) -> dict[str, Any]:
     return {
         "src": Markup("data:image/jpeg;base64,") + Markup(base64.b64encode(row["jpeg"]).decode()),  # noqa: S704 - no special characters
         "width": row["width_px"],
         "height": row["height_px"],
         "is_at": row["shot"] == "at",
-        "told": _time_from_moment_text(row["t_frame_ns"] - row["t_ns"]),
+        "told": _offset_from_moment_text(row["t_frame_ns"] - row["t_ns"]),
     }
 
 
-def _time_from_moment_text(off_ns: int) -> str:
+def _offset_from_moment_text(off_ns: int) -> str:
     """Return in words when a frame was taken, relative to the moment."""
-    if abs(off_ns) < _SAME_MOMENT_NS:
+    if abs(off_ns) < _SAME_MOMENT_TOLERANCE_NS:
         return "at the moment"
     return f"{'+' if off_ns > 0 else _MINUS}{abs(off_ns) / 1e9:.2f} s"

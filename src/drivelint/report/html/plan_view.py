@@ -24,14 +24,16 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 WIDTH: Final = 600
-_HEIGHT_RANGE: Final = (190.0, 330.0)
+_VIEW_HEIGHT_RANGE: Final = (190.0, 330.0)
 _LEAST_VIEW_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
-_PAD_M: Final = (7.0, 3.5)
-_UNKNOWN_SIZE_M: Final = 0.8  # the drawn size of an actor whose size is unknown
-_MOST_LONG_LABELS: Final = 5
+_VIEW_PADDING_M: Final = (7.0, 3.5)
+_DRAWN_SIZE_IF_UNKNOWN_M: Final = 0.8  # the drawn size of an actor whose size is unknown
+_MOST_OTHER_ACTORS_WITH_LONG_LABEL: Final = 5
 _SCALE_BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
-_ROOM_BESIDE_VIEW_SHARE: Final = 0.5  # actors up to half a view outside may enter the view when the scene is replayed
-_TOUCH_M: Final = 0.005  # boxes nearer than this touch
+_ACTORS_KEPT_BESIDE_VIEW_SHARE: Final = (
+    0.5  # actors up to half a view outside may enter the view when the scene is replayed
+)
+_TOUCHING_DISTANCE_M: Final = 0.005  # boxes nearer than this touch
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,7 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
             for a in sorted(
                 (*others, ego), key=_drawn_area_m2, reverse=True
             )  # small actors are drawn over large actors
-            if a is ego or a in met or view.has_actor(a, _ROOM_BESIDE_VIEW_SHARE)
+            if a is ego or a in met or view.has_actor(a, _ACTORS_KEPT_BESIDE_VIEW_SHARE)
         ],
         "gaps": gaps,
         "texts": texts,
@@ -124,17 +126,17 @@ def _fitted_view(ego: Row, yaw: float, points: Points) -> _View:
     raw = _View(ego["x_m"], ego["y_m"], math.cos(yaw), math.sin(yaw), 0.0, 0.0, 1.0, 0.0)
     flat = raw(points)
     u, v = flat[:, 0] - WIDTH / 2, -flat[:, 1]
-    along = max(float(np.ptp(u)) + 2 * _PAD_M[0], _LEAST_VIEW_M[0])
-    across = max(float(np.ptp(v)) + 2 * _PAD_M[1], _LEAST_VIEW_M[1])
-    scale = min(WIDTH / along, _HEIGHT_RANGE[1] / across)
-    height = min(max(across * scale, _HEIGHT_RANGE[0]), _HEIGHT_RANGE[1])
+    along = max(float(np.ptp(u)) + 2 * _VIEW_PADDING_M[0], _LEAST_VIEW_M[0])
+    across = max(float(np.ptp(v)) + 2 * _VIEW_PADDING_M[1], _LEAST_VIEW_M[1])
+    scale = min(WIDTH / along, _VIEW_HEIGHT_RANGE[1] / across)
+    height = min(max(across * scale, _VIEW_HEIGHT_RANGE[0]), _VIEW_HEIGHT_RANGE[1])
     return replace(
         raw, ahead=float(u.max() + u.min()) / 2, left=float(v.max() + v.min()) / 2, scale=scale, height=round(height, 1)
     )
 
 
 def _drawn_size_m(actor: Row) -> tuple[float, float]:
-    return actor["length_m"] or _UNKNOWN_SIZE_M, actor["width_m"] or _UNKNOWN_SIZE_M
+    return actor["length_m"] or _DRAWN_SIZE_IF_UNKNOWN_M, actor["width_m"] or _DRAWN_SIZE_IF_UNKNOWN_M
 
 
 def _drawn_area_m2(actor: Row) -> float:
@@ -223,9 +225,9 @@ def _least_distance_labels_and_lines(
         a, b = box_corners_m(ego), box_corners_m(actor)
         nearest = shapely.get_coordinates(shapely.shortest_line(shapely.polygons(a), shapely.polygons(b)))
         far = float(np.hypot(*(nearest[1] - nearest[0])))
-        if far < _TOUCH_M:
+        if far < _TOUCHING_DISTANCE_M:
             common = float(shapely.area(shapely.intersection(shapely.polygons(a), shapely.polygons(b))))
-            told.append("the boxes overlap" if common > _TOUCH_M else "the boxes touch")
+            told.append("the boxes overlap" if common > _TOUCHING_DISTANCE_M else "the boxes touch")
             continue
         told.append(f"{far:.2f} m from box to box" + (f" with {actor['actor_id']}" if len(met) > 1 else ""))
         p, q = view(nearest)
@@ -249,7 +251,7 @@ def _actors_with_label(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[
     concerned = [actor for actor in actors if actor is ego or actor in met]
     others = [actor for actor in actors if actor is not ego and actor not in met]
     near = sorted(others, key=lambda a: (math.hypot(a["x_m"] - ego["x_m"], a["y_m"] - ego["y_m"]), a["actor_id"]))
-    return [*concerned, *near[:_MOST_LONG_LABELS]]
+    return [*concerned, *near[:_MOST_OTHER_ACTORS_WITH_LONG_LABEL]]
 
 
 def _name_label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:

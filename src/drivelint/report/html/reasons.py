@@ -45,7 +45,7 @@ def summarise_reasons(reasons: Iterable[VerdictReason]) -> str:
     return shown[:1].upper() + shown[1:]
 
 
-def can_be_provided(code: str) -> bool:
+def can_missing_data_be_provided(code: str) -> bool:
     """Return whether a log, a map or an option could provide the missing signal or condition."""
     return code not in _REASON_CODES_NO_INPUT_REMOVES and (code.startswith("missing_") or code.endswith("_unknown"))
 
@@ -62,7 +62,7 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[st
         {
             "verdict": verdict,
             "why": summarise_reasons(verdict_reason(row) for row in told),
-            "provide": can_be_provided(told[0]["reason_code"]),
+            "provide": can_missing_data_be_provided(told[0]["reason_code"]),
             "rules": [
                 (titles.get(rule, rule), "#" + anchor("rule", rule))
                 for rule in sorted({row["rule_id"] for row in told})

@@ -49,7 +49,7 @@ def replays(
         if n > MAX_REPLAY_POINTS:
             break
         actors = {
-            actor: _columns_of_differences(sorted(track.items()), start, lanes.origin)
+            actor: _difference_encoded_columns(sorted(track.items()), start, lanes.origin)
             for actor, track in sorted(tracks.items())
         }
         rings: dict[str, dict[int, dict[str, str]]] = {}
@@ -72,7 +72,7 @@ def _positions_by_actor(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[floa
     return tracks
 
 
-def _columns_of_differences(
+def _difference_encoded_columns(
     track: Sequence[tuple[int, tuple[float, float, float]]], start_ns: int, origin: tuple[float, ...]
 ) -> list[list[int]]:
     if not track:

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 UNITS_PER_M: Final = 10.0
 """Drawn units per metre."""
 _ARROW_EVERY_M: Final = 25.0
-_MOST_DISTANCE_TO_BOUND_M: Final = 6.0  # a lane bound nearer than this belongs to the road that the ego is on
-_MOST_SLANT_RAD: Final = math.radians(
+_MOST_DISTANCE_TO_LANE_BOUND_M: Final = 6.0  # a lane bound nearer than this belongs to the road that the ego is on
+_MOST_ANGLE_TO_LANE_BOUND_RAD: Final = math.radians(
     50
 )  # a bound at a greater angle to the ego's heading does not give the road's heading
-_TILE_M: Final = 200.0  # the side of a tile: lanes that begin in the same square are drawn together
+_TILE_SIDE_M: Final = 200.0  # the side of a tile: lanes that begin in the same square are drawn together
 
 
 class DrawnMaps:
@@ -78,11 +78,11 @@ class DrawnLanes:
 
     def road_heading_rad(self, x_m: float, y_m: float, yaw_rad: float) -> float:
         """Return the road's heading at a point, of its two directions the one nearer to `yaw_rad`; off the road, `yaw_rad`."""
-        near = (np.minimum(self._a, self._b) < (x_m + _MOST_DISTANCE_TO_BOUND_M, y_m + _MOST_DISTANCE_TO_BOUND_M)).all(
-            axis=1
-        ) & (np.maximum(self._a, self._b) > (x_m - _MOST_DISTANCE_TO_BOUND_M, y_m - _MOST_DISTANCE_TO_BOUND_M)).all(
-            axis=1
-        )
+        near = (
+            np.minimum(self._a, self._b) < (x_m + _MOST_DISTANCE_TO_LANE_BOUND_M, y_m + _MOST_DISTANCE_TO_LANE_BOUND_M)
+        ).all(axis=1) & (
+            np.maximum(self._a, self._b) > (x_m - _MOST_DISTANCE_TO_LANE_BOUND_M, y_m - _MOST_DISTANCE_TO_LANE_BOUND_M)
+        ).all(axis=1)
         if not near.any():
             return yaw_rad
         a, step = self._a[near], (self._b - self._a)[near]
@@ -92,7 +92,7 @@ class DrawnLanes:
         heading = np.arctan2(step[:, 1], step[:, 0])
         # ignore half turns: the bounds of oncoming lanes run in the opposite direction
         turn = wrap_angles(2.0 * (heading - yaw_rad)) / 2.0
-        fits = (away < _MOST_DISTANCE_TO_BOUND_M) & (np.abs(turn) < _MOST_SLANT_RAD)
+        fits = (away < _MOST_DISTANCE_TO_LANE_BOUND_M) & (np.abs(turn) < _MOST_ANGLE_TO_LANE_BOUND_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 
     def tiles(self) -> Iterator[dict[str, Any]]:
@@ -151,7 +151,7 @@ class DrawnLanes:
             yield polyline_path(np.rint(np.array([at - 8 * u + 6 * v, at, at - 8 * u - 6 * v])))
 
     def _tile_name(self, lane: Row) -> str:
-        x, y = (int((lane["left"][0][i] - self.origin[i]) // _TILE_M) for i in (0, 1))
+        x, y = (int((lane["left"][0][i] - self.origin[i]) // _TILE_SIDE_M) for i in (0, 1))
         return f"{self._name}t{x}_{y}".replace("-", "n")
 
 

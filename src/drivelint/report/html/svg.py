@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_UNCUT_UP_TO_DECIDING_SPANS: Final = 6.0
+_AXIS_UNCUT_UP_TO_N_DECIDING_SPANS: Final = 6.0
 """An axis that is longer than this many times the distance between the deciding values is cut."""
-_SPANS_BEYOND_DECIDING_VALUES: Final = 1.5
+_CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES: Final = 1.5
 """A cut axis extends beyond the deciding values by this many times the distance between them."""
 _LEAST_DECIDING_SPAN_SHARE: Final = 0.01
 """The distance between the deciding values counts as at least this share of the axis."""
@@ -87,11 +87,11 @@ def axis_for_deciding_values(
     if not core:
         return whole, []
     span = max(max(core) - min(core), _LEAST_DECIDING_SPAN_SHARE * (whole.high - whole.low))
-    if whole.high - whole.low <= _UNCUT_UP_TO_DECIDING_SPANS * span:
+    if whole.high - whole.low <= _AXIS_UNCUT_UP_TO_N_DECIDING_SPANS * span:
         return whole, []
     low, high = (
-        max(whole.low, min(core) - _SPANS_BEYOND_DECIDING_VALUES * span),
-        min(whole.high, max(core) + _SPANS_BEYOND_DECIDING_VALUES * span),
+        max(whole.low, min(core) - _CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES * span),
+        min(whole.high, max(core) + _CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES * span),
     )
     return Axis(low, high, drawn_start, drawn_end), [v for v in (min(found), max(found)) if not low <= v <= high]
 

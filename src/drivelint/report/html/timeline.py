@@ -9,7 +9,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.report.html.anchors import anchor
-from drivelint.report.html.reasons import VerdictReason, can_be_provided, summarise_reasons, verdict_reason
+from drivelint.report.html.reasons import VerdictReason, can_missing_data_be_provided, summarise_reasons, verdict_reason
 from drivelint.report.html.svg import percent
 from drivelint.result.counts import SEVERITIES, group_rows
 from drivelint.result.text import number, seconds
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-_VERDICT_ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
-_VERDICT_LAYERS: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
+_VERDICTS_WORST_FIRST: Final = ("fail", "error", "unknown", "pass", "not_applicable")
+_VERDICTS_IN_DRAWING_ORDER: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
 _TICK_STEPS_S: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 _MOST_TICKS: Final = 9
-_LEAST_BAND_PERCENT: Final = 0.35  # percent: a shorter period is drawn as a mark
+_LEAST_BAND_WIDTH_PERCENT: Final = 0.35  # percent: a shorter period is drawn as a mark
 
 
 class TimelineRow(NamedTuple):
@@ -127,7 +127,7 @@ def _timeline(
     for key, told in group_rows(verdicts, of).items():
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
-        worst = min((row["verdict"] for row in told), key=_VERDICT_ORDER.index)
+        worst = min((row["verdict"] for row in told), key=_VERDICTS_WORST_FIRST.index)
         if worst == "not_applicable" or all(_is_unknown_for_lack_of_data(row) for row in told):
             reason = verdict_reason(told[0])
             folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
@@ -139,8 +139,12 @@ def _timeline(
         )
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
         rows.append(TimelineRow(rule_id, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
-    rows.sort(key=lambda lane: (_VERDICT_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
-    order = sorted(folded.items(), key=lambda item: (_VERDICT_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
+    rows.sort(
+        key=lambda lane: (_VERDICTS_WORST_FIRST.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"]))
+    )
+    order = sorted(
+        folded.items(), key=lambda item: (_VERDICTS_WORST_FIRST.index(item[0][0]), -len(item[1]), item[0][1])
+    )
     return Timeline(
         ego,
         anchor("grid", verdicts[0]["drive_id"], ego),
@@ -148,13 +152,13 @@ def _timeline(
         clock.ticks(),
         rows,
         [FoldedRules(*key, why) for key, why in order],
-        {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _VERDICT_ORDER},
+        {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _VERDICTS_WORST_FIRST},
     )
 
 
 def empty_timeline(ego_id: str) -> Timeline:
     """Return the timeline of an ego without verdicts."""
-    return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_VERDICT_ORDER, 0))
+    return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_VERDICTS_WORST_FIRST, 0))
 
 
 def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
@@ -183,13 +187,13 @@ def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[Folde
 def _is_unknown_for_lack_of_data(verdict: Row) -> bool:
     """Return whether a verdict is unknown for the whole drive because data are missing that could be provided."""
     is_unknown = verdict["verdict"] == "unknown" and verdict["t_start_ns"] is None
-    return bool(is_unknown and can_be_provided(verdict["reason_code"]))
+    return bool(is_unknown and can_missing_data_be_provided(verdict["reason_code"]))
 
 
 def _bands(verdicts: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     """Return the judged periods as bands by verdict; touching periods of one verdict become one band."""
     bands = []
-    for verdict in _VERDICT_LAYERS:
+    for verdict in _VERDICTS_IN_DRAWING_ORDER:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
         rows = [row for row in verdicts if row["verdict"] == verdict]
         for (start, end), reason in sorted((_judged_span_percent(row, clock), verdict_reason(row)) for row in rows):
@@ -226,7 +230,7 @@ def _near_miss_mark(row: Row, clock: TimeAxis) -> dict[str, str]:
 
 
 def _position_and_width(start: float, end: float) -> dict[str, str]:
-    return {"x": percent(start), "w": percent(end - start) if end - start > _LEAST_BAND_PERCENT else ""}
+    return {"x": percent(start), "w": percent(end - start) if end - start > _LEAST_BAND_WIDTH_PERCENT else ""}
 
 
 def _mark_title(row: Row, clock: TimeAxis) -> str:

@@ -75,7 +75,7 @@ def worst_moment(
                 ("near", "also only just kept", itemgetter("title")),
             )
         ],
-        "commands": _commands(row),
+        "commands": _command_lines_for_finding(row),
         "files": _links_to_files(row, folder),
     }
 
@@ -86,15 +86,15 @@ def finding_key(row: Row) -> tuple[Any, ...]:
     return (row.get("finding_id"), *told)
 
 
-def _explain_argument(row: Row) -> str:
+def _argument_for_explain_command(row: Row) -> str:
     """Return the argument that `explain` and `report --incident` accept for a finding or near miss."""
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
-def _commands(row: Row) -> list[list[str]]:
+def _command_lines_for_finding(row: Row) -> list[list[str]]:
     """Return the commands that explain and document a finding or near miss, each in parts, for the folder of a result."""
-    explain = ["drivelint explain", shlex.quote(_explain_argument(row)), "--in ."]
-    return [explain, ["drivelint report .", f"--incident {shlex.quote(_explain_argument(row))}"]]
+    explain = ["drivelint explain", shlex.quote(_argument_for_explain_command(row)), "--in ."]
+    return [explain, ["drivelint report .", f"--incident {shlex.quote(_argument_for_explain_command(row))}"]]
 
 
 def _links_to_files(row: Row, folder: Path | None) -> list[tuple[str, str]]:

@@ -77,7 +77,7 @@ class BackgroundReader(Generic[T]):
         try:
             with closing(self._items):
                 for item in self._items:
-                    if not self._keep_item(item):
+                    if not self._keep_item_unless_stopped(item):
                         break
         except BaseException as error:  # noqa: BLE001 (`take` raises it)
             self._error = error
@@ -86,7 +86,7 @@ class BackgroundReader(Generic[T]):
                 self._ended = True
                 self._changed.notify_all()
 
-    def _keep_item(self, item: T) -> bool:
+    def _keep_item_unless_stopped(self, item: T) -> bool:
         """Keep an item, wait while there are too many bytes, and return whether to continue."""
         with self._changed:
             if item:

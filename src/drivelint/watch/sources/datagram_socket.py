@@ -25,7 +25,7 @@ MOST_DATAGRAM_BYTES: Final = 65535
 """The largest size of a UDP datagram."""
 
 
-def request_loss_data(receiver: socket.socket) -> None:
+def request_arrival_times_and_drop_counts(receiver: socket.socket) -> None:
     """Request a large receive buffer, and the arrival time and the number of drops with each datagram."""
     receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
     receiver.settimeout(STOP_CHECK_PERIOD_S)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from io import FileIO
     from pathlib import Path
 
-POLL_S: Final = 0.05
+GROWTH_CHECK_PERIOD_S: Final = 0.05
 """The interval at which a file is checked for growth."""
 MOST_BYTES_PER_READ: Final = 4 << 20
 """The most bytes that are read at a time."""
@@ -47,7 +47,7 @@ class GrowingFile:
                 return None
             if now >= until:
                 return b""
-            time.sleep(min(POLL_S, until - now))
+            time.sleep(min(GROWTH_CHECK_PERIOD_S, until - now))
 
     def close(self) -> None:
         """Close the file."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-LIBRARY: Final = "drivelint watch"
+MCAP_HEADER_LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
 """The most bytes of pending messages, those later than the start of the last window. No window is as large."""
 MOST_BYTES_PER_READ: Final = 32 << 20
@@ -88,7 +88,7 @@ class McapSource(WindowFileSource):
             self._pending.append(numbered)
             self._pending_bytes += len(each.record)
             while self._pending_bytes > MOST_PENDING_BYTES:
-                self._remember_oldest_pending()
+                self._move_oldest_pending_to_memory()
             found.append(Frame(self._last_ns, numbered, len(each.record)))
         return found
 
@@ -106,7 +106,7 @@ class McapSource(WindowFileSource):
         records = [cast("tuple[int, MessageRecord | DamagedChunk]", frame.data) for frame in frames]
         begin = records[0][0] if records else 0
         while not may_omit_earlier_data and self._pending and self._pending[0].number < begin:
-            self._remember_oldest_pending()
+            self._move_oldest_pending_to_memory()
         begun: set[int] = set()
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
@@ -130,7 +130,7 @@ class McapSource(WindowFileSource):
                 writer.add(self._with_static_content(number, each) if is_first else each)
             writer.finish()
 
-    def _remember_oldest_pending(self) -> None:
+    def _move_oldest_pending_to_memory(self) -> None:
         """Move the first pending message into the memory of its channel."""
         numbered = self._pending.popleft()
         self._pending_bytes -= len(numbered.message.record)
@@ -170,7 +170,7 @@ class _WindowWriter:
 
     def begin(self, stream: McapStream) -> None:
         """Write the schemas, channels and metadata."""
-        self._sink.begin(LIBRARY)
+        self._sink.begin(MCAP_HEADER_LIBRARY)
         for schema in stream.schemas.values():
             self._sink.write_schema(schema)
         for channel in stream.channels.values():

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
 
     from drivelint.watch.sources.mcap_stream import NumberedMessage
 
-RECENT_NS: Final = 2_000_000_000
+RECENT_MESSAGES_SPAN_NS: Final = 2_000_000_000
 """Older messages are not valid: a report of lights is valid for one second, and transforms are joined over at most half a second."""
-MOST_FIRST_MESSAGES: Final = 200
-MOST_FIRST_EVENTS: Final = 20_000
-"""The largest number of first messages of a channel that are kept: `MOST_FIRST_EVENTS` for events and parameters, which may be valid to the
-end of the log; `MOST_FIRST_MESSAGES` for other channels."""
-_MOST_FIRST_MESSAGES_BY_KIND: Final = {
-    EVENT_MESSAGE: MOST_FIRST_EVENTS,
-    PARAMETER_EVENTS: MOST_FIRST_EVENTS,
+MOST_KEPT_FIRST_MESSAGES: Final = 200
+MOST_KEPT_FIRST_EVENTS: Final = 20_000
+"""The largest number of first messages of a channel that are kept: `MOST_KEPT_FIRST_EVENTS` for events and parameters, which may be
+valid to the end of the log; `MOST_KEPT_FIRST_MESSAGES` for other channels."""
+_MOST_KEPT_FIRST_MESSAGES_BY_KIND: Final = {
+    EVENT_MESSAGE: MOST_KEPT_FIRST_EVENTS,
+    PARAMETER_EVENTS: MOST_KEPT_FIRST_EVENTS,
     LIGHT_GROUPS: 0,
     OLD_LIGHT_GROUPS: 0,
 }
-MOST_FIRST_BYTES: Final = 64 << 20
+MOST_KEPT_BYTES_OF_FIRST_MESSAGES: Final = 64 << 20
 _READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLE_BY_SCHEMA, *FOXGLOVE_ROLE_BY_SCHEMA}
 
 
@@ -70,7 +70,7 @@ def memory_for(channel: Channel, schema: str) -> ChannelMemory:
         return SceneMemory(channel.message_encoding)
     if kind in OSI_SCHEMAS or ROS_ROLE_BY_SCHEMA.get(kind) in {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
         return EmptyMemory()
-    return FirstAndRecentMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
+    return FirstAndRecentMemory(_MOST_KEPT_FIRST_MESSAGES_BY_KIND.get(kind, MOST_KEPT_FIRST_MESSAGES))
 
 
 class EmptyMemory:
@@ -85,7 +85,7 @@ class EmptyMemory:
 
 
 class FirstAndRecentMemory:
-    """Keeps the first messages, without repeated equal ones, and the messages of the last `RECENT_NS`."""
+    """Keeps the first messages, without repeated equal ones, and the messages of the last `RECENT_MESSAGES_SPAN_NS`."""
 
     def __init__(self, most_first: int) -> None:
         self._most = most_first
@@ -98,12 +98,12 @@ class FirstAndRecentMemory:
         data = numbered.message
         if not self._recent and self._first and self._first[-1].message.content == data.content:
             return
-        if not self._recent and len(self._first) < self._most and self._first_bytes < MOST_FIRST_BYTES:
+        if not self._recent and len(self._first) < self._most and self._first_bytes < MOST_KEPT_BYTES_OF_FIRST_MESSAGES:
             self._first.append(numbered)
             self._first_bytes += len(data.record)
             return
         self._recent.append(numbered)
-        while len(self._recent) > 1 and self._recent[0].message.log_ns < data.log_ns - RECENT_NS:
+        while len(self._recent) > 1 and self._recent[0].message.log_ns < data.log_ns - RECENT_MESSAGES_SPAN_NS:
             self._recent.popleft()
 
     def current_messages(self) -> list[NumberedMessage]:

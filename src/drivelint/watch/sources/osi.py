@@ -13,7 +13,7 @@ from drivelint.formats.osi.trace_file import LENGTH_FIELD_BYTES
 from drivelint.watch.source import Frame, WindowFileSource
 from drivelint.watch.sources import transports
 from drivelint.watch.sources.background import BackgroundReader
-from drivelint.watch.sources.datagram_socket import datagrams, request_loss_data
+from drivelint.watch.sources.datagram_socket import datagrams, request_arrival_times_and_drop_counts
 from drivelint.watch.sources.growing_file import GrowingFile
 from drivelint.watch.sources.osi_datagrams import MessageAssembler
 from drivelint.watch.sources.osi_messages import MessageCutter, message_kind, message_time_ns
@@ -199,7 +199,7 @@ class DatagramReceiver:
         self._assembler = MessageAssembler(where)
         self._told = 0
         self._ended = False
-        request_loss_data(receiver)
+        request_arrival_times_and_drop_counts(receiver)
         self._reader = BackgroundReader(self._messages(receiver, idle_s))
 
     def _messages(self, receiver: socket.socket, idle_s: float | None) -> Generator[bytes, None, None]:

@@ -23,11 +23,11 @@ from drivelint.phrases import plural
 from drivelint.watch.sources.osi_messages import is_complete_message, message_time_ns
 
 DATAGRAM_HEADER: Final = struct.Struct("<iI")
-MOST_PAUSE_NS: Final = 10_000_000
+MOST_PAUSE_WITHIN_MESSAGE_NS: Final = 10_000_000
 """The longest pause between two datagrams of a message from another machine: they are sent at once, so in a longer pause some were lost."""
-LEAST_HOLE_PERIODS: Final = MAX_GAP_PERIODS + 0.25
+LEAST_HOLE_AFTER_LOSS_PERIODS: Final = MAX_GAP_PERIODS + 0.25
 """The length, in time steps, of the hole that is left after a lost message: the checker joins states that are closer together."""
-_MOST_KEPT_STEPS: Final = 101
+_MOST_KEPT_TIME_STEPS: Final = 101
 """The number of steps from which the usual time step is computed."""
 
 
@@ -79,7 +79,7 @@ class MessageAssembler:
     checker judges nothing across it; a single missing step would look like a slow recorder. Only the first message's sender is accepted.
 
     Three losses cannot be detected: (1) all datagrams of a message from another machine are lost; (2) a datagram that comes two messages
-    late replaces a lost one; (3) the remaining datagrams of two messages within `MOST_PAUSE_NS` have consecutive counters.
+    late replaces a lost one; (3) the remaining datagrams of two messages within `MOST_PAUSE_WITHIN_MESSAGE_NS` have consecutive counters.
     """
 
     def __init__(self, where: str) -> None:
@@ -94,7 +94,7 @@ class MessageAssembler:
         self._last = b""
         self._last_part = b""
         self._last_ns: int | None = None
-        self._steps_ns: deque[int] = deque(maxlen=_MOST_KEPT_STEPS)
+        self._steps_ns: deque[int] = deque(maxlen=_MOST_KEPT_TIME_STEPS)
 
     def add_datagram(self, datagram: Datagram) -> bytes | None:
         """Return the message that this datagram completes, if any. Errors: `TraceError` for a stream that counts from 0."""
@@ -145,7 +145,7 @@ class MessageAssembler:
         previous, self._previous = self._previous, datagram
         if previous is None:
             return False
-        paused = not datagram.local and datagram.at_ns - previous.at_ns > MOST_PAUSE_NS
+        paused = not datagram.local and datagram.at_ns - previous.at_ns > MOST_PAUSE_WITHIN_MESSAGE_NS
         dropped = max(datagram.dropped - previous.dropped, 0)
         self.losses.dropped += dropped
         if dropped:
@@ -187,4 +187,4 @@ class MessageAssembler:
         if not self._steps_ns:
             return self._left_out < 2
         period = median(self._steps_ns)
-        return 0 <= t_ns + period - self._last_ns < LEAST_HOLE_PERIODS * period
+        return 0 <= t_ns + period - self._last_ns < LEAST_HOLE_AFTER_LOSS_PERIODS * period

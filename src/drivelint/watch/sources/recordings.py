@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from mcap.records import Schema
 
-LIBRARY: Final = "drivelint watch"
+MCAP_HEADER_LIBRARY: Final = "drivelint watch"
 _MESSAGE_HEADER: Final = struct.Struct("<BQHIQQ")
 _MESSAGE_FIELDS_BYTES: Final = 22
 _SEQUENCE_MODULUS: Final = 1 << 32
@@ -58,7 +58,7 @@ class McapRecording:
         path.parent.mkdir(parents=True, exist_ok=True)
         self._file = path.open("xb")
         self._sink = Sink(self._file)
-        self._sink.begin(LIBRARY)
+        self._sink.begin(MCAP_HEADER_LIBRARY)
         self._count = 0
 
     def add(self, messages: Sequence[LiveMessage]) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import IngestOptions, Trace
 
 
-FIRST_WINDOW_NS: Final = 1_000_000_000
+FIRST_WINDOW_LENGTH_NS: Final = 1_000_000_000
 """The length of the first window, which is short so that the ego is known early."""
 
 
@@ -53,7 +53,7 @@ class Replay:
     def _number_of_due_steps(self, timeout_s: float) -> int:
         """Return how many steps are due, after a wait of at most `timeout_s`."""
         if self.is_advanced_by_reads:
-            span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_WINDOW_NS)
+            span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_WINDOW_LENGTH_NS)
             return int(np.searchsorted(self._times, self._times[self._at] + span_ns, side="left"))
         now = time.monotonic()
         if self._begun_s is None:

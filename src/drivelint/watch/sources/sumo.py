@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
     from drivelint.watch.sources.sumo_process import VehicleType
 
-LEAST_DECIMALS: Final = 4
+LEAST_RECORDED_DECIMALS: Final = 4
 """The number of decimals that are recorded, unless the configuration requires more."""
 DEFAULT_WINDOW_SPAN_S: Final = 0.5
-MOST_READ_SPAN_S: Final = 0.5
+MOST_SIMULATED_SPAN_PER_READ_S: Final = 0.5
 """The most seconds that one `read` simulates, so that a contact halts the simulation soon."""
 _FCD_BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
 _FCD_END: Final = b"</fcd-export>\n"
@@ -73,15 +73,20 @@ class SumoSource(WindowFileSource):
         self.recording = own / f"{base}.fcd.xml"
         self._types: dict[bytes, VehicleType | None] = {}
         self._files: dict[Path, tuple[BinaryIO, bytes]] = {}
-        self._sumo = SumoProcess(config, precision=max(LEAST_DECIMALS, _precision_decimals(options)), until_s=until_s)
+        self._sumo = SumoProcess(
+            config, precision=max(LEAST_RECORDED_DECIMALS, _precision_decimals(options)), until_s=until_s
+        )
         self._is_over = False
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
         # a window ends with a span: the first span includes the log's first step, each other starts after the last step of the previous one
         self._n_left = self._n_steps + 1
-        self._n_part = max(1, round(MOST_READ_SPAN_S / self._sumo.step_s))
+        self._n_part = max(1, round(MOST_SIMULATED_SPAN_PER_READ_S / self._sumo.step_s))
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Simulate the next part of the span, at most `MOST_READ_SPAN_S` and about `timeout_s` of real time; return a frame per step."""
+        """Simulate the next part of the span, at most `MOST_SIMULATED_SPAN_PER_READ_S` and about `timeout_s` of real time.
+
+        Return a frame per step.
+        """
         if self._is_over:
             return None
         until = time.monotonic() + timeout_s

@@ -26,12 +26,12 @@ from drivelint.watch.sources.sumo_steps import HOST, StepReader
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-GRACE_S: Final = 5.0
+GRACE_BEFORE_KILL_S: Final = 5.0
 """How long SUMO may take to end by itself and to write its other outputs."""
 CONNECT_TIMEOUT_S: Final = 30.0
 _STEP_TIMEOUT_S: Final = 10.0
-_RETRY_S: Final = 0.02
-_MOST_STARTS: Final = 3
+_CONNECT_RETRY_PERIOD_S: Final = 0.02
+_MOST_START_ATTEMPTS: Final = 3
 _PORT_IN_USE_WORD: Final = "bind"
 """A word in SUMO's message if another program took the port in the meantime."""
 _NO_SUMO_MESSAGE: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
@@ -145,14 +145,14 @@ class SumoProcess:
         return None
 
     def end(self) -> None:
-        """End SUMO: give it `GRACE_S` if it waits for a request, else kill it at once. May be called twice."""
+        """End SUMO: give it `GRACE_BEFORE_KILL_S` if it waits for a request, else kill it at once. May be called twice."""
         con, self._con = self._con, None
         if self._process is not None:
             if con is not None and not self._is_asked:
                 with suppress(*self._broken):
                     con.close(wait=False)
                 with suppress(subprocess.TimeoutExpired):
-                    self._process.wait(GRACE_S)
+                    self._process.wait(GRACE_BEFORE_KILL_S)
             self._kill(self._process)
         self._steps.close()
         self._messages.close()
@@ -168,7 +168,7 @@ class SumoProcess:
         """Start SUMO and connect to it; try another port if another program took the first."""
         found, home = find_sumo_program_and_home()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
-        for start in range(_MOST_STARTS):
+        for start in range(_MOST_START_ATTEMPTS):
             with socket.create_server((HOST, 0)) as free:
                 port = free.getsockname()[1]
             options = [*_SUMO_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
@@ -181,7 +181,7 @@ class SumoProcess:
             )  # fmt: skip
             if self._connect(port, self._process):
                 return
-            if _PORT_IN_USE_WORD not in self._output_text() or start == _MOST_STARTS - 1:
+            if _PORT_IN_USE_WORD not in self._output_text() or start == _MOST_START_ATTEMPTS - 1:
                 raise self._failure()
 
     def _connect(self, port: int, process: subprocess.Popen[bytes]) -> bool:
@@ -193,7 +193,7 @@ class SumoProcess:
             try:
                 self._con = Connection(HOST, port, process, None, True)
             except OSError:
-                time.sleep(_RETRY_S)
+                time.sleep(_CONNECT_RETRY_PERIOD_S)
             else:
                 return True
         self._kill(process)
@@ -214,7 +214,7 @@ class SumoProcess:
         code: int | None = None
         if self._process is not None:
             with suppress(subprocess.TimeoutExpired):
-                code = self._process.wait(GRACE_S)
+                code = self._process.wait(GRACE_BEFORE_KILL_S)
         lines = [line for line in self._output_text().splitlines() if not line.startswith(("Warning:", "Quitting"))]
         first = next((n for n, line in enumerate(lines) if line.startswith("Error:")), 0)
         told = one_line("\n".join(line.removeprefix("Error:").strip() for line in lines[first:]))
