@@ -51,7 +51,7 @@ def test_workflows_and_action_keep_to_their_schemas(tmp_path: Path) -> None:
 
 
 def test_the_job_for_gitlab_keeps_to_its_schema_and_reports_as_junit(tmp_path: Path) -> None:
-    (job,) = (block.body for block in blocks(FOLDER / "ci.md") if block.mark == "workflow: gitlab")
+    (job,) = (block.body for block in blocks(FOLDER / "ready-made.md") if block.mark == "workflow: gitlab")
     (tmp_path / ".gitlab-ci.yml").write_text(job, encoding="utf-8")
     assert yaml.safe_load(job)["drives"]["artifacts"]["reports"] == {"junit": "results/junit.xml"}
     pytest.importorskip("check_jsonschema", reason="check-jsonschema is not installed: pip install check-jsonschema")

@@ -29,7 +29,7 @@ from drivelint.result.names import TABLE_OF_FILE
 from tests.report import synthetic
 from tests.shared_data import ROOT
 
-PRINTING = {"format_", "verbose", "quiet", "cache", "jobs", "help"}
+PRINTING = {"format_", "report", "verbose", "quiet", "cache", "jobs", "help"}
 """Options of the command line alone: what it prints and keeps, and by how many processes."""
 NAMES = {"map_": "map", "sensor_range_m": "sensor_range"}
 """Parameters of the command line -> keywords, where they differ."""
