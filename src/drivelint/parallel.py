@@ -125,7 +125,7 @@ def _judge_in_workers(
     recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING_STAGE, len(paths))
-    listener = _WorkerProgressDisplay(progress, len(paths))
+    listener = _DisplayForWorkers(progress, len(paths))
     workers = [_Worker(_PartOfLogs(own, part, len(paths), is_output, {}), listener) for part in parts]
     try:
         for worker in workers:
@@ -190,7 +190,7 @@ def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
 
-class _WorkerProgressDisplay:
+class _DisplayForWorkers:
     """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
@@ -211,7 +211,7 @@ class _Worker:
     `ended`: the outcome of the part; None: the process still runs.
     """
 
-    def __init__(self, part: _PartOfLogs, listener: _WorkerProgressDisplay) -> None:
+    def __init__(self, part: _PartOfLogs, listener: _DisplayForWorkers) -> None:
         self.ended: _PartOutcome | None = None
         self._part = part
         self._listener = listener
@@ -371,7 +371,10 @@ def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interr
             interruption=interruption,
             unstoppable_rule_handler=handler,
         )
-    return _PartOutcome(judged, None if recording is None or part.limits_of_unstoppable_rules else recording.inputs())
+    return _PartOutcome(
+        judged,
+        None if recording is None or part.limits_of_unstoppable_rules else recording.end_recording_and_return_inputs(),
+    )
 
 
 def _obey_parent(pipe: Connection, interruption: Interruption) -> None:

@@ -104,7 +104,7 @@ def test_a_changed_camera_file_is_a_changed_input(tmp_path: Path) -> None:
     out = tmp_path / "out"
     with record_inputs(OutputPathTest(out), [log]) as recorder:
         judged(log, out)
-    inputs = recorder.inputs()
+    inputs = recorder.end_recording_and_return_inputs()
     assert inputs is not None, recorder.trouble
     assert str(log / f"{FRONT}.arrow") in inputs.states
 

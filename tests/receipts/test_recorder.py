@@ -31,7 +31,7 @@ NO_OUTPUTS = OutputPathTest(None)
 def read_by(job: Callable[[], object], *named: Path) -> RunInputs:
     with record_inputs(NO_OUTPUTS, named) as recorder:
         job()
-    inputs = recorder.inputs()
+    inputs = recorder.end_recording_and_return_inputs()
     assert inputs is not None, recorder.trouble
     return inputs
 
@@ -121,7 +121,7 @@ def test_what_changed_while_it_was_read_is_no_input(tree: Path) -> None:
 
     with record_inputs(NO_OUTPUTS, []) as recorder:
         reads_and_changes()
-    assert recorder.inputs() is None
+    assert recorder.end_recording_and_return_inputs() is None
 
 
 def test_a_pipe_cannot_be_looked_at_again(tree: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_pipe_cannot_be_looked_at_again(tree: Path) -> None:
     try:
         with record_inputs(NO_OUTPUTS, []) as recorder:
             os.close(os.open(f"/dev/fd/{reads}", os.O_RDONLY))
-        assert recorder.inputs() is None
+        assert recorder.end_recording_and_return_inputs() is None
     finally:
         os.close(reads)
         os.close(writes)
@@ -138,7 +138,7 @@ def test_a_pipe_cannot_be_looked_at_again(tree: Path) -> None:
 def test_what_depends_on_the_machine_is_not_of_its_inputs(tree: Path) -> None:
     with record_inputs(NO_OUTPUTS, []) as recorder:
         report_not_repeatable("a rule took too long")
-    assert (recorder.inputs(), recorder.trouble) == (None, "a rule took too long")
+    assert (recorder.end_recording_and_return_inputs(), recorder.trouble) == (None, "a rule took too long")
 
 
 def test_what_a_run_writes_is_no_input(tree: Path) -> None:
@@ -157,7 +157,7 @@ def test_nothing_is_recorded_afterwards(tree: Path) -> None:
     with record_inputs(NO_OUTPUTS, []) as recorder:
         pass
     (tree / "a/one.txt").read_text()
-    inputs = recorder.inputs()
+    inputs = recorder.end_recording_and_return_inputs()
     assert inputs is not None
     assert str(tree / "a/one.txt") not in inputs.states
 

@@ -174,8 +174,10 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
 
 
 def _may_have_actor_states(path: Path) -> bool:
-    """Return whether a table can contain states: a first row, or the Parquet types, must allow a time and a position. A CSV without rows
-    counts as yes."""
+    """Return whether a table can contain states: the Parquet types, or one of the first rows of a CSV, must allow a time and a position.
+
+    A CSV without rows counts as yes.
+    """
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)

@@ -88,8 +88,9 @@ def _binding_database() -> duckdb.DuckDBPyConnection:
 def _bind(
     con: duckdb.DuckDBPyConnection, section: Section, defaults: Mapping[str, object], lost_columns: set[str]
 ) -> tuple[str | None, list[tuple[int, str]]]:
-    """Return a section's SQL without unknown names and parameters (None if it cannot be bound), and its problems: line and message.
+    """Return a section's SQL without parameters and unknown names (None if it cannot be bound), and its problems: line and message.
 
+    Parameters are replaced by their defaults, and unknown names by the nearest name; NULL, if a column has none near.
     `lost_columns`: the columns replaced by NULL so far, to which columns are added. They are reported only once.
     """
     problems: list[tuple[int, str]] = []

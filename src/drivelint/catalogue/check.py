@@ -149,7 +149,7 @@ def check_query(sql: str, file: str, line: int = 1) -> SelectParts:
         frozenset(found.tables),
         parameters,
         _result_columns(node),
-        found.tables | _places_of_columns(text, node),
+        found.tables | _places_of_result_columns(text, node),
         tuple(found.reasons),
         needs,
         names,
@@ -336,7 +336,7 @@ def _result_columns(node: Node) -> tuple[str, ...] | None:
     return names if all(names) else None
 
 
-def _places_of_columns(text: _SqlText, node: Node) -> dict[str, str]:
+def _places_of_result_columns(text: _SqlText, node: Node) -> dict[str, str]:
     """Return `AS column` -> `file:line` of the column's name, for a SELECT or the first branch of a UNION."""
     while node["type"] == "SET_OPERATION_NODE":
         node = union_queries(node)[0]

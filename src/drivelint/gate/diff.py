@@ -73,12 +73,12 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         rules_not_run=tuple(sorted(base_lookup.rules.keys() - new_lookup.rules.keys())),
         n_both=len(base_id_by_new_id),
         other_maps=tuple(sorted(now["drive_id"] for now, was in both if now["map_sha256"] != was["map_sha256"])),
-        shorter=tuple(sorted(now["drive_id"] for now, was in both if _is_much_shorter(now, was))),
+        shorter=tuple(sorted(now["drive_id"] for now, was in both if _is_drive_much_shorter(now, was))),
         changed_rules=tuple(name for name in sorted(new_lookup.rules) if _is_changed(name, base_lookup, new_lookup)),
     )
 
 
-def _is_much_shorter(now: Row, was: Row) -> bool:
+def _is_drive_much_shorter(now: Row, was: Row) -> bool:
     lasts, lasted = now["duration_s"], was["duration_s"]
     return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE_OF_BASE_DRIVE * lasted)
 

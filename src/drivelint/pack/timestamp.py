@@ -73,7 +73,7 @@ def check_response(content: bytes, envelope: bytes, roots_file: Path | None) -> 
     from rfc3161_client import VerificationError, VerifierBuilder, decode_timestamp_response
 
     try:
-        response = decode_timestamp_response(_response_in_der_order(content))
+        response = decode_timestamp_response(_response_with_certificates_in_der_order(content))
         told = response.tst_info
         imprint, time = told.message_imprint, told.gen_time
     except (ValueError, IndexError, TypeError, AttributeError):
@@ -94,7 +94,7 @@ def check_response(content: bytes, envelope: bytes, roots_file: Path | None) -> 
     return StampCheckResult([], f"existed by {shown}, as a trusted authority states")
 
 
-def _response_in_der_order(content: bytes) -> bytes:
+def _response_with_certificates_in_der_order(content: bytes) -> bytes:
     """Return a response with its certificates in DER order, which rfc3161-client requires and some authorities do not keep.
 
     No signature covers that order.

@@ -74,8 +74,11 @@ class InputRecorder:
                     if known.setdefault(name, said) != said:
                         self.trouble = f"{name} changed"
 
-    def inputs(self) -> RunInputs | None:
-        """Return the inputs; None: the result depends on more than the inputs, or they changed during the run."""
+    def end_recording_and_return_inputs(self) -> RunInputs | None:
+        """End the recording in this thread, and return the inputs.
+
+        None: the result depends on more than the inputs, or they changed during the run.
+        """
         self._inside.busy = True  # from here on, nothing is recorded in this thread
         if self.trouble is not None:
             return None
@@ -152,12 +155,12 @@ def current_recorder() -> InputRecorder | None:
 def _audit_hook(event: str, args: tuple[Any, ...]) -> None:
     if not _recorders or event not in _AUDIT_EVENTS:
         return
-    importer = _calling_module().startswith(("importlib.", "_frozen_importlib", "zipimport"))
+    importer = _module_that_raised_event().startswith(("importlib.", "_frozen_importlib", "zipimport"))
     for recorder in tuple(_recorders):  # another thread may remove a recorder
         recorder.record_event(event, args, importer)
 
 
-def _calling_module() -> str:
+def _module_that_raised_event() -> str:
     """Return the module whose code raised the event; '' if there is none, as in a thread of a library."""
     try:
         return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001 - the only way to recognise the importer

@@ -182,7 +182,10 @@ def _notes_on_unrecorded_signals(result: Result) -> list[InputNote]:
 
 
 def _notes_on_parked_egos(result: Result) -> list[InputNote]:
-    """Return the note on egos that never move (two thirds in perception logs); only rules about standing apply to them."""
+    """Return the note on egos that never move (in perception logs, two thirds of the egos).
+
+    Only rules about standing vehicles apply to them.
+    """
     parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES_CODE))
     n, of = (len(counts.distinct_rows(verdicts, _EGO_COLUMNS)) for verdicts in (parked, result.verdicts))
     words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: only rules about standing vehicles apply"

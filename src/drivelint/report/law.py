@@ -23,7 +23,9 @@ def law_words(result: Result) -> str:
     laws = sorted({tuple(rule["law"]) for rule in result.rules.select(["law"]).to_pylist() if rule["law"]})
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     return (
-        "; ".join([*(_words_on_law(law, drives) for law in laws), *_words_on_unrequested_packs(laws, drives)])
+        "; ".join(
+            [*(_words_on_application_of_law(law, drives) for law in laws), *_words_on_unrequested_packs(laws, drives)]
+        )
         if drives and laws
         else ""
     )
@@ -42,7 +44,7 @@ def _words_on_unrequested_packs(laws: list[tuple[str, ...]], drives: list[Row]) 
             yield f"of {nation} not requested: --rules {' --rules '.join(sorted(packs))}"
 
 
-def _words_on_law(law: tuple[str, ...], drives: list[Row]) -> str:
+def _words_on_application_of_law(law: tuple[str, ...], drives: list[Row]) -> str:
     """Return in words whether this law was applied in the drives, and the source of each drive's nation."""
     applied = related_values(law)
     counted: Counter[str] = Counter()

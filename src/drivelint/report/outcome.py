@@ -15,7 +15,12 @@ from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
-from drivelint.result.model import decision_counts, exit_status, gating_findings, is_too_little_decided
+from drivelint.result.model import (
+    decision_counts,
+    exit_status,
+    gating_findings,
+    is_first_not_judged_reason_too_little_decided,
+)
 from drivelint.result.text import ego_and_object_names, number
 
 if TYPE_CHECKING:
@@ -226,7 +231,9 @@ def _outcome_label(result: Result, has_findings: bool) -> str:
     The word is not PASS if there are findings, even if none gates, nor if fewer rules were decided than left undecided.
     """
     code, told = exit_status(result).code, counts.verdict_counts(result.verdicts)
-    if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_too_little_decided(result)):
+    if code != ExitCode.OK and not (
+        code == ExitCode.NOT_JUDGED and is_first_not_judged_reason_too_little_decided(result)
+    ):
         return LABEL_OF_EXIT_CODE.get(code, "?")
     if code == ExitCode.NOT_JUDGED and told["pass"] + told["fail"]:
         return _TOO_LITTLE_JUDGED

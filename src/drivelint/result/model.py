@@ -273,7 +273,7 @@ def decision_counts(verdicts: pa.Table) -> tuple[int, int]:
     return sum(is_decided.values()), len(is_decided)
 
 
-def is_too_little_decided(result: Result) -> bool:
+def is_first_not_judged_reason_too_little_decided(result: Result) -> bool:
     """Return whether the first reason for exit code 4 is that the run decided too little."""
     first = next(_not_judged_statuses(result), None)
     return first is not None and first.why == why_too_little_decided(result)

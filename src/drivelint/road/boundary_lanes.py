@@ -118,7 +118,7 @@ def _group_into_roads(lanes: Mapping[str, BoundedLane]) -> None:
     for first in lanes.values():
         if first.road_id:
             continue
-        row = _lanes_side_by_side(first, lanes)
+        row = _row_of_lanes_with_directions(first, lanes)
         name = f"r{first.lanelet_id}"
         rightmost_left = max((i for i, (_, along) in enumerate(row) if along < 0), default=-1)
         for i, (lane, along) in enumerate(row):
@@ -126,7 +126,9 @@ def _group_into_roads(lanes: Mapping[str, BoundedLane]) -> None:
             lane.lane_no = rightmost_left - i if i > rightmost_left else rightmost_left - i + 1
 
 
-def _lanes_side_by_side(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
+def _row_of_lanes_with_directions(
+    first: BoundedLane, lanes: Mapping[str, BoundedLane]
+) -> list[tuple[BoundedLane, int]]:
     """Return the lanes side by side with `first`, from left to right in its direction; 1: same direction, -1: opposite."""
     row, lane_ids = [(first, 1)], {first.lanelet_id}
     for step in (1, -1):

@@ -84,7 +84,7 @@ class Actor:
         v = np.interp(t, *_times_and_values(speed))
         s = self.text.from_ + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * DT_S)])
         d = values_between_knots(offset, t)
-        x, y, heading, z = way.places_at(s)
+        x, y, heading, z = way.poses_at(s)
         x, y = x - d * np.sin(heading), y + d * np.cos(heading)
         drift = np.gradient(d, DT_S)
         slip = np.where(

@@ -55,7 +55,7 @@ class _Writer:
                 shape = f'<arc curvature="{self.hand * piece.curvature!r}"/>' if piece.curvature else "<line/>"
             place = f'x="{pose.x!r}" y="{self.hand * pose.y!r}" hdg="{self.hand * pose.heading!r}"'
             plan += f'<geometry s="{s!r}" {place} length="{piece.length!r}">{shape}</geometry>'
-            x, y, heading = (float(v) for v in road.places_at(np.array(s + piece.length)))
+            x, y, heading = (float(v) for v in road.poses_at(np.array(s + piece.length)))
             pose, s = type(pose)(x, y, heading), s + piece.length
         kinds = "".join(self.type_element(road, at, limit) for at, limit in road.limits or [(0.0, "")])
         junction = road.turn.junction if road.turn else -1

@@ -101,7 +101,7 @@ class Road:
         )
         return -sign * (inner + lane.width / 2)
 
-    def places_at(self, s: Floats, aside: Floats | float = 0.0) -> tuple[Floats, Floats, Floats]:
+    def poses_at(self, s: Floats, aside: Floats | float = 0.0) -> tuple[Floats, Floats, Floats]:
         """Return x, y and heading at stations, `aside` metres to the left of the line, which is straight beyond both ends."""
         s = np.asarray(s, float)
         x, y, heading = np.zeros(s.shape), np.zeros(s.shape), np.zeros(s.shape)
@@ -128,7 +128,7 @@ class Road:
     def lane_exit_or_entry_pose(self, lane: Lane, *, is_exit: bool) -> Pose:
         """Return the pose at which traffic leaves a lane (`is_exit`) or enters it, in the direction of the traffic."""
         s = self.length if is_exit == (lane.number > 0) else 0.0
-        x, y, heading = (float(v) for v in self.places_at(np.array(s), self.lane_offset_m(lane, s)))
+        x, y, heading = (float(v) for v in self.poses_at(np.array(s), self.lane_offset_m(lane, s)))
         return Pose(x, y, heading if lane.number > 0 else heading + math.pi)
 
 
@@ -219,7 +219,7 @@ class ActorPath:
             heading = heading[distinct]
         return cls(s, x, y, np.unwrap(heading), z)
 
-    def places_at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def poses_at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return x, y, heading and height at stations."""
         over = np.minimum(s, 0.0) + np.maximum(s - self.s[-1], 0.0)
         x, y, heading, z = (np.interp(s, self.s, column) for column in (self.x, self.y, self.heading, self.z))
@@ -238,7 +238,7 @@ def path_along_lanes(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]
             if len(road.section_starts()) > 1
             else road.lane_offset_m(lane, 0.0)
         )
-        x, y, heading = road.places_at(s, aside)
+        x, y, heading = road.poses_at(s, aside)
         stations, heights = np.array(road.heights, float).T
         z = np.interp(s, stations, heights)
         if number < 0:

@@ -126,7 +126,7 @@ def arc_length_polynomial(u: Floats, v: Floats, p_max: float, length: float | No
     p_at = np.linspace(0.0, p_max, 257)
     along = np.concatenate([[0.0], np.cumsum(_arc_lengths(u, v, p_at[:-1], p_at[1:]))])
     if not along[-1] > 1e-6:
-        raise MalformedError("a polynomial geometry has no length")
+        raise MalformedError("the curve of a polynomial geometry is 0 m long")
     return Polynomial(u, v, (along, p_at), 1.0 if length is None else float(along[-1]) / length)
 
 

@@ -203,7 +203,7 @@ class _MappedTable:
         states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
         self._report_rows_back_in_time(states, np.concatenate(row_numbers))
         convert_to_map_frame(states, self.mapping)
-        self._report_unmapped_classes(states)
+        self._report_if_no_class_is_mapped(states)
         return Recording(
             format="",
             states=states,
@@ -342,7 +342,7 @@ class _MappedTable:
             )
             self.findings.append(QualityFinding("clock_jump", "warning", message, len(rows), int(states.t_ns[back[0]])))
 
-    def _report_unmapped_classes(self, states: States) -> None:
+    def _report_if_no_class_is_mapped(self, states: States) -> None:
         """Add a finding with the unmapped texts of the class column, if the mapping finds no class for any actor."""
         spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
         if (

@@ -58,7 +58,7 @@ def _write_payload_and_return_evidence(pack_folder: Path, request: PackRequest) 
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
             check_request = tables.drive_request_with_present_paths(drive, given.get(drive.key), request.map)
             inputs.copy_inputs_of_drive(drive.key, check_request)
-            found += _write_findings_and_return_entries(pack_folder, drive, check_request, loaded_rules)
+            found += _write_evidence_and_return_finding_entries(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
         told = {
             "evidence": contents.AUDIT_FORMAT_VERSION,
@@ -76,7 +76,7 @@ def _write_payload_and_return_evidence(pack_folder: Path, request: PackRequest) 
     return told
 
 
-def _write_findings_and_return_entries(
+def _write_evidence_and_return_finding_entries(
     pack_folder: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
 ) -> list[dict[str, Any]]:
     """Write the data that reproduce the findings of a drive; return their entries for `evidence.json`."""

@@ -28,7 +28,7 @@ _VIEW_HEIGHT_RANGE: Final = (190.0, 330.0)
 _LEAST_VIEW_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
 _VIEW_PADDING_M: Final = (7.0, 3.5)
 _DRAWN_SIZE_IF_UNKNOWN_M: Final = 0.8  # the drawn size of an actor whose size is unknown
-_MOST_OTHER_ACTORS_WITH_LONG_LABEL: Final = 5
+_MOST_OTHER_ACTORS_NAMED_IF_IDS_ARE_LONG: Final = 5
 _SCALE_BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
 _ACTORS_KEPT_BESIDE_VIEW_SHARE: Final = (
     0.5  # actors up to half a view outside may enter the view when the scene is replayed
@@ -251,7 +251,7 @@ def _actors_with_label(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[
     concerned = [actor for actor in actors if actor is ego or actor in met]
     others = [actor for actor in actors if actor is not ego and actor not in met]
     near = sorted(others, key=lambda a: (math.hypot(a["x_m"] - ego["x_m"], a["y_m"] - ego["y_m"]), a["actor_id"]))
-    return [*concerned, *near[:_MOST_OTHER_ACTORS_WITH_LONG_LABEL]]
+    return [*concerned, *near[:_MOST_OTHER_ACTORS_NAMED_IF_IDS_ARE_LONG]]
 
 
 def _name_label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
