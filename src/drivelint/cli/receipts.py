@@ -147,7 +147,7 @@ class StoredRunOfCheck:
             return
         if result.run_options is None or self._contains_outputs(result.run_options.traces.values()):
             return
-        inputs = self._recorder.inputs()
+        inputs = self._recorder.end_recording_and_return_inputs()
         if inputs is None:
             return
         day = self._day if gate is not None and gate.waivers else None
