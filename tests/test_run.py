@@ -218,7 +218,7 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
     ("offset", "told"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "is on a lane or other area")]
 )
 def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
-    with pytest.raises(MapError, match=r"of another place than safe\.csv: .*" + told):
+    with pytest.raises(MapError, match=r"^map road\.xodr is of another place than safe\.csv: .*" + told):
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
@@ -339,7 +339,7 @@ def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told:
     found = [(q["severity"], q["message"]) for q in drive["quality"] if q["check_id"] == "aside_of_lane"]
     assert len(found) == (told is not None)
     assert all(
-        severity == "warning" and f"ego ego keeps {told} beside the middle" in words for severity, words in found
+        severity == "warning" and words.startswith(f"ego keeps {told} beside the middle") for severity, words in found
     )
     assert not drive["lossy"]
 

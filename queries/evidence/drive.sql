@@ -25,7 +25,8 @@ WITH
         FROM data_log l JOIN map_quality m USING (environment_id) JOIN environment e USING (environment_id)
         UNION ALL
         SELECT drive_id, $aside_check, 'warning', ego_id, 1, NULL,
-            format('ego {} keeps {:.2f} m beside the middle of its lane (median): is the map moved against the log? --map-offset puts it right', ego_id, lateral_median_m),
+            format('{} keeps {:.2f} m beside the middle of its lane (median): is the map moved against the log? --map-offset puts it right',
+                CASE WHEN ego_id = 'ego' THEN ego_id ELSE 'ego ' || ego_id END, lateral_median_m),
             false
         FROM registration WHERE ok AND is_aside),
     defects AS (

@@ -19,6 +19,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, VerdictFilter, explain
 from drivelint.explain.target import _complete_name
 from drivelint.explain.text import _sentence_with_rounded_numbers, render, to_json
+from drivelint.result.text import seconds
 from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
 
@@ -66,6 +67,13 @@ def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -
 
 
 @pytest.mark.ci
+def test_the_header_names_the_first_step_at_which_the_rule_is_broken(folder: Path) -> None:
+    found = of(folder, "contact-signature@collision")
+    first = next(step.t_ns for step in found.series if step.holds is False)
+    assert f"first broken at {seconds(first, found.drive['t_start_ns'])}" in flat(said(found))
+    assert "first broken" not in said(of(folder, "no-collision@safe"))
+
+
 def test_a_requirement_is_taken_apart(folder: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     assert math.isclose(sum(part.value for part in found.parts), found.verdict["required"], rel_tol=1e-9)

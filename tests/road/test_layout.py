@@ -166,7 +166,9 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
     assert not library.doubts_on_map(log, found)
 
     wrong = MapLibrary(DriveInput(map=path, handedness="rht" if hand == "lht" else "lht"))
-    with pytest.raises(MapError, match="runs against its lanes, on road 1 both ways"):
+    with pytest.raises(
+        MapError, match=r"^map small\.xodr: the traffic of \S+ runs against its lanes, on road 1 both ways"
+    ):
         wrong.doubts_on_map(log, wrong.find(log)[0])
 
     alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())

@@ -93,7 +93,7 @@ class MapLibrary:
         trace, trouble = self._moved_into_map_frame_or_evidence_of_other_place(environment, trace)
         if trouble:
             raise MapError(
-                f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
+                f"map {_file_name(environment)} is of another place than {trace.path.name}: {trouble}; "
                 "set the right --map, or --map-offset"
             )
         if environment.lanes_source == "default":
@@ -176,7 +176,7 @@ class MapLibrary:
         seen = self._lane_headings(environment, trace.tables["actor_state"], map_fit.DRIVING_SIDE_CHECK_SAMPLES)
         if road := map_fit.road_with_reversed_traffic(self._lanes(environment), seen):
             raise MapError(
-                f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
+                f"map {_file_name(environment)}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
                 f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
                 f"{correction_hint(side, source)}, or use another map"
             )
@@ -242,6 +242,11 @@ class MapLibrary:
                 origin=self._options.map_origin,
             )
         return self._loaded[key]
+
+
+def _file_name(environment: MapTables) -> str:
+    """Return the name of the map's file, or of the log that contains the map."""
+    return str(environment.tables["environment"]["name"][0].as_py())
 
 
 def _evidence_of_other_place(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:

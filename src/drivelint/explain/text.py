@@ -101,6 +101,9 @@ def _title_and_verdict(explanation: Explanation, width: int) -> list[RenderableT
     if row["t_start_ns"] is not None:
         start, end = (seconds(row[key], explanation.drive["t_start_ns"]) for key in ("t_start_ns", "t_end_ns"))
         who.append(f"at {start}" if start == end else f"{start} to {end}")
+        broken = [step.t_ns for step in explanation.series if step.holds is False and step.t_ns >= row["t_start_ns"]]
+        if broken and start != end:
+            who.append(f"first broken at {seconds(broken[0], explanation.drive['t_start_ns'])}")
     if "finding_id" in row:
         who.append(f"finding {row['finding_id']}")
     word = row["verdict"].replace("_", " ").upper()

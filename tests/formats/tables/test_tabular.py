@@ -392,6 +392,8 @@ def test_an_actor_that_changes_its_column_group_does_not_run_back(tmp_path: Path
     ("lines", "message"),
     [
         (["t,id,x,yy,yaw,vx,vy", "0,a,0,0,0,0,0"], r"no column 'y', which mapping 'mapping' needs: did you mean 'yy'"),
+        (["t,id,x,yaw,vx,vy", "0,a,0,0,0,0"], r"no column 'y', .* needs: known are t, id, x, yaw, vx, vy$"),
+        (["t,id,x,y,yaw,vx", "0,a,0,0,0,0"], r"no column 'vy', .* needs: known are t, id, x, y, yaw, vx$"),
         (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' occurs 2 times"),
         (["t,id,x,y,yaw,vx,vy"], r"no row follows the header|no actor states"),
         (

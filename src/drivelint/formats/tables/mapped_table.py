@@ -33,7 +33,7 @@ from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import convert_to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
-from drivelint.phrases import hint, name_list
+from drivelint.phrases import name_list, nearest_word
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -153,10 +153,12 @@ def _column_group_numbers(path: Path, name: str, mapping: Mapping, sheet: Sheet)
     if templates:
         shape = re.compile(re.escape(templates[0]).replace(re.escape(GROUP_PLACEHOLDER), r"(\d+)"))
         groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
-    for column in (column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups):
+    needed = [column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups]
+    for column in needed:
         count = sheet.names.count(column)
         if count == 0:
-            known = hint(column, sheet.names)
+            near = nearest_word(column, [unused for unused in sheet.names if unused not in needed])
+            known = f"did you mean {near!r}?" if near else f"known are {', '.join(sheet.names)}"
             raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
         if count > 1:
             raise TraceError(f"{path}: the column {column!r} occurs {count} times: rename all but one")
