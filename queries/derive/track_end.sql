@@ -27,10 +27,12 @@ track_edge AS (
     -- A track that begins or ends with the log is not lost.
     WHERE CASE WHEN lost THEN k_after IS DISTINCT FROM k + 1 AND t_ns < t_end_limit_ns ELSE k_before IS DISTINCT FROM k - 1 AND t_ns > t_begin_limit_ns END
 ),
+motion_doubt AS (SELECT drive_id, actor_id, t_from_ns, t_to_ns FROM doubt WHERE doubts_place(quantity) OR quantity = 'velocity'),
 -- A sample in doubt does not show where the object went.
 credible_edge AS (
     FROM track_edge e
-    ANTI JOIN doubt d ON d.drive_id = e.drive_id AND d.actor_id IN (e.object_id, e.ego_id) AND e.t_ns BETWEEN d.t_from_ns AND d.t_to_ns AND (doubts_place(d.quantity) OR d.quantity = 'velocity')
+    ANTI JOIN motion_doubt d ON d.drive_id = e.drive_id AND d.actor_id = e.object_id AND e.t_ns BETWEEN d.t_from_ns AND d.t_to_ns
+    ANTI JOIN motion_doubt o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND e.t_ns BETWEEN o.t_from_ns AND o.t_to_ns
 ),
 -- The extrapolated position of the object soon after its track ends, or just before it begins, at its speed there.
 extrapolation AS (

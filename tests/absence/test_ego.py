@@ -54,7 +54,8 @@ def require_missed(said: Checked, share: str, missing: range, ego: str = EGO) ->
     decided = any(row["verdict"] in {"pass", "fail"} for row in rows)
     assert (code, drive["lossy"]) == (3 if decided else 4, True)
     (message,) = absence(drive)
-    assert message.startswith(f"the ego {ego} is absent for {share}, from "), message
+    named = "the ego" if ego == "ego" else f"the ego {ego}"
+    assert message.startswith(f"{named} is absent for {share}, from "), message
     start, begin, end = drive["t_start_ns"], missing.start * 10**8, missing[-1] * 10**8
     for row in rows:
         within = row["t_start_ns"] - start <= end and row["t_end_ns"] - start >= begin
