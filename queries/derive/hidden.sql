@@ -53,7 +53,7 @@ lane_hole AS (
     WHERE hole_length_m > f.slack0_m
 ),
 object_without_position AS (SELECT DISTINCT drive_id, ego_id, object_id FROM missing_step),
--- What is in doubt of the objects, and of the ego, from which their distances are measured.
+-- The steps at which the log doubts a quantity of an object, or of the ego, from which the distances of objects are measured.
 doubted_step AS (
     SELECT
         st.drive_id, st.ego_id, d.actor_id, st.t_ns, bool_or(doubts_place(d.quantity)) AS place, bool_or(d.quantity = 'velocity') AS velocity, bool_or(d.quantity = 'heading') AS heading, bool_or(d.quantity = 'size') AS size
