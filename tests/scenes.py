@@ -26,7 +26,7 @@ from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, derivations, needed_derivations
 from tests.formats.opendrive import xodr
 from tests.together import Question, SceneTables, answers
@@ -321,7 +321,7 @@ def _place(drives: Iterable[Drive]) -> _Place:
 def _of_the_map() -> list[str]:
     return [
         table
-        for table, columns in store.column_comments().items()
+        for table, columns in declarations.column_comments().items()
         if "environment_id" in columns and "drive_id" not in columns
     ]
 

@@ -9,7 +9,7 @@ import pytest
 import drivelint
 from drivelint.annotate import annotator
 from drivelint.engine.derive import derive
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from tests.formats.mcap.damage import CHUNK, FOOTER, MESSAGE, places, replaced
 from tests.formats.osi import osi_log
 
@@ -182,7 +182,7 @@ def test_what_was_declared_before_a_loss_is_not_known_after_it() -> None:
 
 
 def fill(con: duckdb.DuckDBPyConnection) -> None:
-    store.recreate_with_enums(con, store.tables_of_lifetime("drive", "part"), ["d"], {"e"})
+    store.recreate_with_enums(con, declarations.tables_of_lifetime("drive", "part"), ["d"], {"e"})
     rows: dict[str, list[Row]] = {
         "actor": [{"actor_id": "e", "is_ego": True}],
         "actor_state": [{"actor_id": "e", "t_ns": t} for t in (0, 10, 20, 30)],

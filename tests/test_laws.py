@@ -22,7 +22,7 @@ from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
 from drivelint.engine import batch
 from drivelint.evaluate.sql_fragments import Binding
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.sql.derivations import derivations
 from tests import blinding, scenes
 from tests.clean.judging import told
@@ -209,7 +209,7 @@ def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
     """Return for every table how many rows it has and the sum of their hashes, whatever their order."""
-    tables = [table for table in store.column_comments() if table != "drive"]
+    tables = [table for table in declarations.column_comments() if table != "drive"]
     return {t: con.execute(f"SELECT count(*), sum(hash(t)::HUGEINT) FROM {t} t").fetchall()[0] for t in tables}
 
 

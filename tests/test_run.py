@@ -22,12 +22,14 @@ from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
 from drivelint.result import evidence
 from drivelint.run import CheckOptions, check
-from drivelint.sql import store
+from drivelint.sql import declarations
 
 OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "vy_mps"}
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
-TABLES = [table for table in store.column_comments() if table not in ("drive", "rule", "visited_cell", "corridor_cell")]
+TABLES = [
+    table for table in declarations.column_comments() if table not in ("drive", "rule", "visited_cell", "corridor_cell")
+]
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 
@@ -361,7 +363,7 @@ def test_kept_database_has_every_stage(tmp_path: Path, monkeypatch: pytest.Monke
     with duckdb.connect(str(tmp_path / "drivelint.duckdb"), read_only=True) as con:
         count = {
             t: con.execute(f"SELECT count(*) FROM {t}").fetchall()[0][0]
-            for t in store.column_comments()
+            for t in declarations.column_comments()
             if t not in ("drive", "rule")
         }
         assert con.execute("SELECT count(DISTINCT drive_id) FROM actor_state").fetchall() == [(3,)]

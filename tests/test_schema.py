@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.resources import folder
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.sql.derivations import derivations
 
 
@@ -36,15 +36,14 @@ def test_what_is_parsed_from_the_files_is_what_the_database_has(database: duckdb
     found: dict[str, list[str]] = {}
     for table, column in rows.fetchall():
         found.setdefault(table, []).append(column)
-    assert {table: list(columns) for table, columns in store.column_comments().items()} == found
+    assert {table: list(columns) for table, columns in declarations.column_comments().items()} == found
 
 
 def test_every_table_of_the_library_is_filled_by_a_query_of_its_name() -> None:
     """A table that nothing fills is empty, and empty would read as: it never happened."""
-    tables = {table for file in ("derived", "conduct", "junctions") for table in store.column_comments(file)}
-    filled = {file.stem for file in (folder("queries") / "derive").glob("*.sql")}
-    assert tables - filled == {"profile"}  # filled from queries/profiles.toml
-    assert filled - tables == set()
+    topics = sorted(path.name for path in (folder("queries") / "library").iterdir())
+    declared = {table for topic in topics for table in declarations.column_comments(f"library/{topic}")}
+    assert declared == {file.stem for file in (folder("queries") / "library").glob("*/*.sql")} == set(derivations())
 
 
 def test_units_are_si_and_stand_in_the_name(database: duckdb.DuckDBPyConnection) -> None:
@@ -65,13 +64,13 @@ def test_only_the_wheels_extension_may_be_unsigned() -> None:
 
 def test_every_table_says_how_long_its_rows_stay() -> None:
     """A table of a map has no drive; what is derived for egos goes with its part of the drive, unless it is a result."""
-    assert set(store.lifetimes()) == set(store.column_comments())
-    for table, lifetime in store.lifetimes().items():
-        columns = store.column_comments()[table]
+    assert set(declarations.lifetimes()) == set(declarations.column_comments())
+    for table, lifetime in declarations.lifetimes().items():
+        columns = declarations.column_comments()[table]
         assert (lifetime == "map") <= ("environment_id" in columns and "drive_id" not in columns), table
         assert (lifetime in {"drive", "part"}) <= ("drive_id" in columns), table
-    assert {store.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
-    assert store.tables_of_lifetime("drive") == [
+    assert {declarations.lifetimes()[table] for table in derivations()} == {"map", "part", "run"}
+    assert declarations.tables_of_lifetime("drive") == [
         "actor",
         "actor_state",
         "signal_state",

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 import pyarrow as pa
 import pytest
 
-from drivelint.sql import store, syntax
+from drivelint.sql import declarations, store, syntax
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -77,7 +77,7 @@ class SceneTables:
     def _restricted(self, sql: str) -> str:
         ctes = []
         for table in sorted(_tables(sql)):
-            columns = store.column_comments()[table]
+            columns = declarations.column_comments()[table]
             own = [column for column in ("drive_id", "environment_id") if column in columns]
             if not own:
                 continue
@@ -259,4 +259,6 @@ def _is_same(one: Drive, other: Drive) -> bool:
 
 @cache
 def _tables(sql: str) -> frozenset[str]:
-    return frozenset(syntax.tables_read(syntax.parse_select(sql, "a test's query")) & store.column_comments().keys())
+    return frozenset(
+        syntax.tables_read(syntax.parse_select(sql, "a test's query")) & declarations.column_comments().keys()
+    )

@@ -61,6 +61,7 @@ def code_and_version_hash(code_globs: tuple[str, ...]) -> str:
     package = Path(__file__).parent
     files = [file for pattern in code_globs for file in package.glob(pattern)]
     files += [*folder("schemas").glob("*"), *(folder("queries") / "macros").glob("*")]
+    files += (folder("queries") / "library").glob("*/*.sql")
     for file in sorted(file for file in files if file.is_file()):
         content = file.read_bytes()
         said.update(f"{file.name} {len(content)}\0".encode() + content)

@@ -21,7 +21,7 @@ from drivelint.annotate.layout import MAX_SERIES, layout_json
 from drivelint.annotate.measures import MarginSeries
 from drivelint.resources import folder
 from drivelint.result.geometry import without_geometry
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 from tests.annotate.runs import CASE, run, the
 from tests.annotate.viewer import messages, yaw
 

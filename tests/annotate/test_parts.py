@@ -17,7 +17,7 @@ from drivelint.annotate.tracks import tracks
 from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 
 VIEWER_TYPES = {"string", "number", "integer", "boolean", "array"}
 """What Foxglove's and Lichtblick's readers of JSON Schema take for a plain field; a list of types or null ends the channel."""

@@ -9,7 +9,7 @@ import pytest
 from drivelint.casefile import Case, judge_case, read_cases
 from drivelint.casefile.scene import complete_scene, refuse_wrong_word
 from drivelint.errors import RuleError
-from drivelint.sql import store
+from drivelint.sql import declarations
 from tests.casefile.speed_rule import measured, said_of, with_cases
 from tests.evaluate.packs import HOLDS, INVARIANT, write
 
@@ -81,7 +81,9 @@ def test_tables_and_columns_are_named_with_the_nearest(tmp_path: Path) -> None:
             judge_case(rule, Case(name="scene", given_tables=given, expect="pass"))
 
 
-COLUMNS = [(table, name, column) for table, columns in store.word_columns().items() for name, column in columns.items()]
+COLUMNS = [
+    (table, name, column) for table, columns in declarations.word_columns().items() for name, column in columns.items()
+]
 
 
 @pytest.mark.parametrize(("table", "name", "column"), COLUMNS, ids=[f"{table}.{name}" for table, name, _ in COLUMNS])

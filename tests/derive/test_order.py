@@ -88,7 +88,7 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
         return fill(con, step)
 
     monkeypatch.setattr(derive, "_fill_table", late)
-    with pytest.raises(DriveLintError, match=r"^queries/derive/step\.sql: .*'x'"):
+    with pytest.raises(DriveLintError, match=r"^queries/library/log/step\.sql: .*'x'"):
         derive.derive(con, ["step", "visited_cell"], are_map_tables=False, always_needed_tables=())
     assert con.execute("SELECT (SELECT count(*) FROM visited_cell), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from drivelint.catalogue import load_rules
-from drivelint.sql.store import column_comments, input_quantities_by_column, lifetimes
+from drivelint.sql.declarations import column_comments, input_quantities_by_column, lifetimes
 from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, brief, verdicts, write
 
 if TYPE_CHECKING:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from drivelint.explain.text import _column_comment, _cut_line
-from drivelint.sql import store
+from drivelint.sql import declarations
 
 
 def test_a_null_says_what_it_means() -> None:
-    text = store.column_comments()["following"]["joined_ns"]
+    text = declarations.column_comments()["following"]["joined_ns"]
     assert _column_comment(text, None) == "NULL: the vehicle was ahead before, or its arrival was not seen"
     assert _column_comment(text, 7_000_000_000).startswith("see vehicle_ahead: the time since which the gap is new")
     assert len(_column_comment(text, 7_000_000_000)) <= 70

@@ -11,7 +11,8 @@ import pytest
 import shapely
 
 from drivelint.formats import load_map, read_source
-from drivelint.sql.store import arrow_schemas, column_comments, connect, insert
+from drivelint.sql.declarations import column_comments
+from drivelint.sql.store import arrow_schemas, connect, insert
 from tests.formats.opendrive.naive import NaiveMap
 from tests.formats.opendrive.xodr import checks, lanelets, points, rows
 from tests.shared_data import shared

@@ -22,7 +22,7 @@ from drivelint.guide import dictionary
 from drivelint.reasons.signals import REMEDIES, SIGNALS
 from drivelint.result.geometry import GEOMETRIES_OF_TABLE
 from drivelint.result.names import TABLE_OF_FILE
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 from drivelint.sql.words import vocabularies
 from tests.guide.blocks import PAGES
 from tests.shared_data import ROOT

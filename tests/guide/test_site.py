@@ -16,8 +16,8 @@ from typer.main import get_command
 from drivelint import cli, guide
 from drivelint.errors import UsageError
 from drivelint.guide import dictionary, html, search, site
+from drivelint.sql.declarations import column_comments
 from drivelint.sql.derivations import derivations
-from drivelint.sql.store import column_comments
 from tests.report.browser import CHROMIUM, Page
 from tests.shared_data import ROOT
 

@@ -79,8 +79,8 @@ def test_every_shared_code_is_given_somewhere() -> None:
     given = {code for rule in catalogue.load_rules().values() for code in rule.reason_codes}
     texts = [
         file.read_text(encoding="utf-8")
-        for part in ("macros", "derive", "judging")
-        for file in (folder("queries") / part).glob("*.sql")
+        for part in ("macros", "library", "judging")
+        for file in (folder("queries") / part).rglob("*.sql")
     ]
     named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {reason_text.PLAIN_TEXT_CODE}
     assert sorted(reason_text.texts_of_shared_codes().keys() - given - named) == []

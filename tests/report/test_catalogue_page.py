@@ -92,7 +92,7 @@ def test_every_event_that_a_rule_or_a_derivation_asks_for_is_on_the_page() -> No
 
 
 def test_the_modes_that_the_log_is_looked_through_for_are_those_of_the_vocabulary() -> None:
-    sql = (folder("queries") / "derive" / "capability.sql").read_text(encoding="utf-8")
+    sql = (folder("queries") / "library" / "log" / "capability.sql").read_text(encoding="utf-8")
     assert compared(sql, "mode") == ON_OFF_EVENTS.keys()
     required = {signal for rule in load_rules().values() for signal in rule.requires if signal.startswith("mode_")}
     assert required <= {f"mode_{mode}" for mode in ON_OFF_EVENTS}

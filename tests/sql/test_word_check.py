@@ -9,8 +9,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from drivelint.resources import folder
-from drivelint.sql import macro_trees, store, syntax, word_check
+from drivelint.sql import declarations, macro_trees, store, syntax, word_check
 from drivelint.sql.derivations import derivations
+from drivelint.sql.library import library_tables
 from drivelint.sql.word_check import CheckedQuery, check_query
 from drivelint.sql.word_scope import Relation
 from drivelint.sql.words import ColumnVocabulary, WordColumn
@@ -200,9 +201,8 @@ def test_other_words_are_found_with_the_nearest(sql: str, message: str) -> None:
 
 COLUMNS = [
     (table, name, column)
-    for file in ("model", "map", "derived", "conduct", "junctions")
-    for table in store.column_comments(file)
-    for name, column in store.word_columns()[table].items()
+    for table in (*declarations.column_comments("model"), *declarations.column_comments("map"), *library_tables())
+    for name, column in declarations.word_columns()[table].items()
     if not column.field and not column.is_list
 ]
 FORMS = (
@@ -264,10 +264,10 @@ def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column
     assert [each.message for each in (*found.wrong, *word_check.wrong_words_in_columns(name, found.relation))] == []
     assert found.relation.complete
     filled = dict(found.relation.columns)
-    assert list(store.column_comments()[name].keys() - filled.keys() - {"geom"}) == []
+    assert list(declarations.column_comments()[name].keys() - filled.keys() - {"geom"}) == []
     # what it is made of is known, but for the conditions of a drive, whose words are in one column
-    unknown = [column for column in store.word_columns()[name] if filled[column] is None]
-    assert unknown == (list(store.word_columns()[name]) if name == "ego_condition" else [])
+    unknown = [column for column in declarations.word_columns()[name] if filled[column] is None]
+    assert unknown == (list(declarations.word_columns()[name]) if name == "ego_condition" else [])
 
 
 def test_a_derivation_that_gives_another_word_is_found() -> None:
@@ -302,5 +302,5 @@ def test_what_reads_the_tables_beside_the_rules_has_only_words_that_they_have(pa
 
 
 def test_the_nearest_word_of_a_column_with_words_besides_is_one_of_both() -> None:
-    beyond: ColumnVocabulary = store.word_columns()["line_step"]["beyond"].vocabulary
+    beyond: ColumnVocabulary = declarations.word_columns()["line_step"]["beyond"].vocabulary
     assert {"opposing", "same", "shoulder"} < set(beyond.words)

@@ -22,7 +22,7 @@ from drivelint.formats.osi import map_kinds
 from drivelint.reasons.signals import SIGNALS
 from drivelint.resources import folder
 from drivelint.road import signcodes
-from drivelint.sql import store, words
+from drivelint.sql import declarations, store, words
 from drivelint.sql.words import ColumnVocabulary, refuse_wrong_words, vocabularies, word_column
 
 SOURCES = Path(drivelint.__file__).parent
@@ -42,23 +42,24 @@ TEXTS = {
 
 def columns_of_texts() -> list[tuple[str, str, bool]]:
     """Return table, column and whether it names a vocabulary, of every column that holds texts and is no id."""
-    declared = re.findall(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", declarations(), re.DOTALL | re.MULTILINE)
+    tables = re.findall(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", declared(), re.DOTALL | re.MULTILINE)
     return [
         (table, column, comment.startswith("["))
-        for table, body in declared
+        for table, body in tables
         for column, kind, comment in re.findall(r"^    (\w+) (.*?),?\s*-- (.+)$", body, re.MULTILINE)
         if "VARCHAR" in kind and not re.search(r"(^|_)id$", column)
     ]
 
 
-def declarations() -> str:
-    return "\n".join(file.read_text(encoding="utf-8") for file in sorted(folder("schemas").glob("*.sql")))
+def declared() -> str:
+    files = [*sorted(folder("schemas").glob("*.sql")), *sorted((folder("queries") / "library").glob("*/*.sql"))]
+    return "\n".join(file.read_text(encoding="utf-8") for file in files)
 
 
 def test_every_column_of_texts_names_its_vocabulary_or_has_none() -> None:
     columns = columns_of_texts()
     assert len(columns) > 150
-    outputs = {table for file in ("verdict", "output", "evidence") for table in store.column_comments(file)}
+    outputs = {table for file in ("verdict", "output", "evidence") for table in declarations.column_comments(file)}
     bare = [(table, column) for table, column, marked in columns if not marked and column not in TEXTS]
     assert bare == []
     # what rules read has words, or texts that nobody lists
@@ -67,14 +68,14 @@ def test_every_column_of_texts_names_its_vocabulary_or_has_none() -> None:
 
 
 def test_every_vocabulary_is_that_of_a_column_or_of_a_condition() -> None:
-    used = {column.vocabulary.name for columns in store.word_columns().values() for column in columns.values()}
+    used = {column.vocabulary.name for columns in declarations.word_columns().values() for column in columns.values()}
     assert used | {"engaged"} == set(vocabularies())
     assert set(DRIVE_CONDITION_VALUES) <= set(vocabularies())
 
 
 def test_a_vocabulary_has_not_the_name_of_a_table() -> None:
     """Either is looked up by `drivelint docs dictionary NAME`; the table of verdicts lists the five words itself."""
-    assert set(vocabularies()) & set(store.column_comments()) == {"verdict"}
+    assert set(vocabularies()) & set(declarations.column_comments()) == {"verdict"}
 
 
 @pytest.mark.parametrize("vocabulary", vocabularies().values(), ids=lambda each: each.name)
@@ -162,7 +163,7 @@ def test_the_mark_of_a_column_says_its_vocabulary_and_what_it_has_besides() -> N
     assert column.vocabulary.words == ("traffic_light", "stop", "give_way", "none")
     assert (column.field, column.is_list) == ("", False)
     assert word_column("VARCHAR", "the drive") is None
-    lights = store.word_columns()["way_mark"]["lights"]
+    lights = declarations.word_columns()["way_mark"]["lights"]
     assert (lights.field, lights.is_list, lights.vocabulary.name) == ("fit", True, "light_fit")
     with pytest.raises(
         DriveLintError, match=r"no vocabulary \[actor_clas\] in words\.toml; did you mean 'actor_class'\?"
@@ -171,7 +172,7 @@ def test_the_mark_of_a_column_says_its_vocabulary_and_what_it_has_besides() -> N
 
 
 def test_a_comment_is_shown_with_the_words_in_place_of_the_mark() -> None:
-    comments = store.column_comments()
+    comments = declarations.column_comments()
     assert comments["actor_state"]["indicator"] == "off, left, right, hazard; NULL: not known"
     assert comments["lanelet"]["lane_type"] == "a word of lane_type"
     assert comments["ego_condition"]["nation"] == "gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given"
@@ -183,14 +184,14 @@ def handed_over(table: str, column: str, value: Any) -> None:
     """Make a table as a reader hands it over, with a value in one column."""
     kind = store.arrow_schemas()[table].field(column).type
     rows = pa.table({column: pa.array([None, value, value], kind)})
-    refuse_wrong_words(rows, store.word_columns()[table], f"reader some-format: table {table}")
+    refuse_wrong_words(rows, declarations.word_columns()[table], f"reader some-format: table {table}")
 
 
 GATED = [
     (table, name, column)
     for file in ("model", "map")
-    for table in store.column_comments(file)
-    for name, column in store.word_columns()[table].items()
+    for table in declarations.column_comments(file)
+    for name, column in declarations.word_columns()[table].items()
 ]
 
 

@@ -10,7 +10,7 @@ import duckdb
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
 from drivelint.result.geometry import GEOMETRIES_OF_TABLE, GEOMETRY_IN_DEGREES_COLUMN, with_geometry
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.sql.internal_names import without_internal_names
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Table:
         """Return a row per column: `column`, `type`, and `meaning` with the unit; `meaning` is empty for the result of a query."""
         import pyarrow as pa
 
-        meanings = store.column_comments().get(self._schema_table, {})
+        meanings = declarations.column_comments().get(self._schema_table, {})
         types = [str(kind) for kind in self._rows.schema.types]
         said = [meanings.get(column, "") for column in self.columns]
         return Table(pa.table({"column": list(self.columns), "type": types, "meaning": said}))

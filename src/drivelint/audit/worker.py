@@ -32,7 +32,7 @@ from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
 from drivelint.result.model import LIMIT_ERROR_CODES, map_misfit_reason
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -145,7 +145,7 @@ class Judge:
         self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
     ) -> list[Receipt]:
         """Judge drives that all have different ids together, write the results, and return the receipts."""
-        for table in store.tables_of_lifetime("run"):
+        for table in declarations.tables_of_lifetime("run"):
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
         self._session.forget_judged_logs()

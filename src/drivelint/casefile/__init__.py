@@ -36,9 +36,9 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
-import yaml
 
 from drivelint.casefile import merged_cases
+from drivelint.casefile.case_list import parse_cases_file
 from drivelint.casefile.scene import Row, column_and_factor, complete_scene, refuse_wrong_word
 from drivelint.catalogue.check import collect_problems, raise_problems
 from drivelint.catalogue.rule_file import in_order_of_lines
@@ -86,39 +86,17 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
-class OnOffAsTextLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # builds without libyaml lack it
-    """A YAML loader that reads `off` and `on` as strings, not as booleans, because an indicator may be `off`."""
-
-
-OnOffAsTextLoader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
-OnOffAsTextLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
-
-
 def read_cases(rule: Rule) -> list[Case]:
     """Read the rule's cases.
 
     Errors: `RuleError` if the file is missing, is not YAML, or is not a valid list of cases.
     """
     file = cases_path(rule)
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
+    if not file.exists():
         raise RuleError(
             f"{file}:1: rule {rule.id} has no cases; write clean, violation, boundary, not applicable and unknown"
-        ) from error
-    except UnicodeDecodeError as error:
-        raise RuleError(f"{file}:1: not UTF-8 at byte {error.start}") from error
-    try:
-        cases, problems = _parse_cases(file, text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = (
-            min(mark.line + 1, len(text.splitlines())) if mark else 1
-        )  # PyYAML reports an early end after the last line
-        raise RuleError(f"{file}:{line}: not YAML: {' '.join(str(error).split())}") from error
+        )
+    cases, problems = parse_cases_file(file, Case)
     problems += _case_problems(rule, cases)
     if problems:
         for case in cases:
@@ -178,36 +156,6 @@ def _signal_problem(signal: str) -> str | None:
 def cases_path(rule: Rule) -> Path:
     """Return the file of a rule's cases."""
     return rule.path.with_suffix(".cases.yml")
-
-
-def _parse_cases(file: Path, text: str) -> tuple[list[Case], list[str]]:
-    """Return the cases of a file, each with its line, and the problems of the other cases. Errors: `RuleError`, `yaml.YAMLError`."""
-    loader = OnOffAsTextLoader(text)
-    root = loader.get_single_node()
-    raw = loader.construct_document(root) if root else None
-    if not isinstance(raw, list):
-        raise RuleError(f"{file}:1: cases are a list: each begins with '- name: ...'")
-    lines = [item.start_mark.line + 1 for item in root.value]
-    keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
-    cases, problems = [], []
-    for line, item in zip(lines, raw, strict=True):
-        if not isinstance(item, dict) or "line" in item:
-            problems.append(f"{file}:{line}: a case consists of 'key: value' pairs: {', '.join(keys)}")
-            continue
-        place = f"{file}:{line}: case {item.get('name')!r}"
-        unknown = [key for key in item if key not in keys]
-        problems += [f"{place}: unknown field `{key}`{_near_key(str(key), keys)}" for key in unknown]
-        if not unknown:
-            try:
-                cases.append(msgspec.convert({**item, "line": line}, Case))
-            except msgspec.ValidationError as error:
-                problems.append(f"{place}: {error}")
-    return cases, problems
-
-
-def _near_key(word: str, keys: Sequence[str]) -> str:
-    near = nearest_word(word, keys)
-    return f"; did you mean {near!r}?" if near else f"; known are {', '.join(keys)}"
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:
@@ -349,14 +297,15 @@ def _row_difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Ro
     for n, (wanted, row) in enumerate(zip(expect, rows, strict=True)):
         for name, value in wanted.items():
             column, scale = column_and_factor("verdict", name, "expect")
-            same = value in row[column] if name == "reason" else _is_same_value(value, row[column], scale)
+            same = value in row[column] if name == "reason" else is_same_value(value, row[column], scale)
             if not same:
                 shown = row[column] if scale == 1 or row[column] is None else row[column] / scale
                 return f"row {n}: expected {name} = {value!r}, got {shown!r}: {_row_text(row)}"
     return ""
 
 
-def _is_same_value(expected_value: Any, actual_value: Any, scale: int) -> bool:
+def is_same_value(expected_value: Any, actual_value: Any, scale: int) -> bool:
+    """Return whether a value agrees with an expected one to its written decimals, at least two. `scale`: of the expected value."""
     if (
         isinstance(expected_value, bool)
         or expected_value is None

@@ -17,13 +17,17 @@ import duckdb
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.binding_errors import unknown_columns
 from drivelint.casefile.scene import case_database
+from drivelint.casefile.table_cases import cases_file, run_table_cases
+from drivelint.casefile.table_mutation import judge_table_mutants
 from drivelint.catalogue import read_rule
 from drivelint.catalogue.check import error_message, line_of_error
 from drivelint.catalogue.load import rule_files, rule_id_of
 from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME, in_order_of_lines
 from drivelint.errors import ExitCode, RuleError, UsageError
 from drivelint.evaluate import query_plans
+from drivelint.phrases import hint
 from drivelint.resources import folder
+from drivelint.sql.library import library_tables
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -31,6 +35,7 @@ if TYPE_CHECKING:
     from threading import Event
 
     from drivelint.catalogue import Rule
+    from drivelint.sql.library import LibraryTable
 
     Say = Callable[[str], None]
 
@@ -88,6 +93,48 @@ def case_test(root: Path | None, rule_globs: Sequence[str], print_line: Say) -> 
         print_line("\n".join([first, *failed]))
         code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
     return code
+
+
+def table_case_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
+    """Run the cases of the library tables, and print a line for each table and each failed case.
+
+    Return USAGE if cases cannot be used, else FAILED if a case failed. Tables without cases are skipped. Errors: `UsageError` for a name
+    that no table has.
+    """
+    code = ExitCode.OK
+    for table in _selected_tables(table_globs):
+        try:
+            results = run_table_cases(table)
+        except RuleError as error:
+            print_line(f"REFUSED {error}")
+            code = ExitCode.USAGE
+            continue
+        failed = [f"     {result.message}" for result in results if not result.ok]
+        first = f"{'FAIL' if failed else 'ok  '} {table.name}: {len(results) - len(failed)} of {len(results)} cases"
+        print_line("\n".join([first, *failed]))
+        code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
+    return code
+
+
+def table_mutation_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
+    """Judge the mutants of the library tables by their cases, and print a line for each table and each survivor.
+
+    Return FAILED if a mutant survives that is not listed. Tables without cases are skipped. Errors: as those of `table_case_test`.
+    """
+    results = []
+    for table in _selected_tables(table_globs):
+        results.append(judge_table_mutants(table))
+        print_line(mutation.result_text(results[-1]))
+    print_line(mutation.summary_line(results, "table"))
+    return ExitCode.OK if all(result.ok for result in results) else ExitCode.FAILED
+
+
+def _selected_tables(table_globs: Sequence[str]) -> list[LibraryTable]:
+    for glob in table_globs:
+        if not any(fnmatchcase(name, glob) for name in library_tables()):
+            raise UsageError(f"--table {glob}: no library table has this name; {hint(glob, library_tables())}")
+    chosen = [t for t in library_tables().values() if any(fnmatchcase(t.name, glob) for glob in table_globs)]
+    return [table for table in chosen if len(chosen) == 1 or cases_file(table).exists()]
 
 
 def repeat_tests_on_changes(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from drivelint.casefile.scene import Row, case_database, insert_rows
 from drivelint.evaluate import evaluate
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

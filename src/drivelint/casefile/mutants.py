@@ -109,6 +109,18 @@ def _mutants_of_sql(rule: Rule) -> Iterator[Mutant]:
                 yield Mutant(f"@{section} {fault}", _with_section(rule, section, _tree_sql(changed)))
 
 
+def mutants_of_select(select: str) -> list[tuple[str, str]]:
+    """Return the mutants of a table's SELECT as (fault, SELECT): comparisons reversed, and thresholds times 0.9 and 1.1."""
+    seen: Counter[str] = Counter()
+    found: list[tuple[str, str]] = []
+    tree = syntax_tree(select)
+    for node_path, node in _deciding_nodes(tree["statements"][0]["node"]):
+        for fault, changed in _trees_with_other_values(tree, node_path, node):
+            seen[fault] += 1
+            found.append((fault if seen[fault] == 1 else f"{fault} #{seen[fault]}", _tree_sql(changed)))
+    return found
+
+
 def _with_section(rule: Rule, name: str, sql: str) -> Rule:
     return msgspec.structs.replace(rule, sections={**rule.sections, name: sql})
 
@@ -160,11 +172,7 @@ def _node_at(root: Any, node_path: NodePath) -> Any:
 
 def _faulty_trees(tree: Node, node_path: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
     """Yield the faults of one node, each as its text and the changed tree."""
-    if (turned := _REVERSED_COMPARISON.get(str(node.get("type")))) is not None:
-        yield f"turned: {_node_sql(node)}", _replace_node(tree, node_path, node | {"type": turned})
-    if _is_threshold(tree, node_path, node):
-        for factor in _THRESHOLD_FACTORS:
-            yield f"{_node_sql(node)} * {factor:g}", _replace_node(tree, node_path, _scale_node(node, factor))
+    yield from _trees_with_other_values(tree, node_path, node)
     for key, words in _CLAUSES.items():
         clause = node.get(key)
         if isinstance(clause, dict) and (key != "condition" or node.get("type") == "JOIN"):
@@ -175,6 +183,15 @@ def _faulty_trees(tree: Node, node_path: NodePath, node: Node) -> Iterator[tuple
         if not rest["using_columns"]:
             rest |= {"condition": _parse_expression("true")}
         yield f"USING without: {column}", _replace_node(tree, node_path, rest)
+
+
+def _trees_with_other_values(tree: Node, node_path: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
+    """Yield a reversed comparison, or a threshold times each factor, as the text of the fault and the changed tree."""
+    if (turned := _REVERSED_COMPARISON.get(str(node.get("type")))) is not None:
+        yield f"turned: {_node_sql(node)}", _replace_node(tree, node_path, node | {"type": turned})
+    if _is_threshold(tree, node_path, node):
+        for factor in _THRESHOLD_FACTORS:
+            yield f"{_node_sql(node)} * {factor:g}", _replace_node(tree, node_path, _scale_node(node, factor))
 
 
 def _trees_without_a_term(tree: Node, node_path: NodePath, clause: Node, words: str) -> Iterator[tuple[str, Node]]:

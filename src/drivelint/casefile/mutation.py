@@ -71,6 +71,7 @@ class MutationResult(NamedTuple):
 
 class _ListedSurvivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rule: str
+    """The id of the rule, or the name of the table."""
     mutant: str
     reason: str
 
@@ -108,15 +109,15 @@ def result_text(result: MutationResult) -> str:
     )
 
 
-def summary_line(results: Sequence[MutationResult]) -> str:
-    """Return the counts of all results in one line."""
+def summary_line(results: Sequence[MutationResult], tested: str = "stable rule") -> str:
+    """Return the counts of all results in one line; `tested`: what has them."""
     if not results:
-        return "no rule was tested"
+        return "nothing was tested"
     stable = [result for result in results if result.stable]
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"
     n, noticed = sum(result.n for result in stable), sum(result.n_noticed for result in stable)
-    return f"{plural(len(stable), 'stable rule')}: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
+    return f"{plural(len(stable), tested)}: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
 
 
 def judge_mutants(rule: Rule) -> MutationResult:
@@ -130,7 +131,7 @@ def judge_mutants(rule: Rule) -> MutationResult:
     wrong = mutants(rule)
     try:
         listed = tuple(
-            entry.mutant for entry in _read_survivors(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id
+            entry.mutant for entry in read_survivors(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id
         )
         survivors = tuple(mutant.fault for mutant in _surviving_mutants(rule, wrong))
     except RuleError as error:
@@ -161,11 +162,12 @@ def unknown_rule_messages(rules: Sequence[Rule]) -> list[str]:
     return [
         f"{pack / SURVIVORS_FILE}: there is no rule {name!r} here"
         for pack in dict.fromkeys(rule.path.parent for rule in rules)
-        for name in sorted({entry.rule for entry in _read_survivors(pack / SURVIVORS_FILE)} - known)
+        for name in sorted({entry.rule for entry in read_survivors(pack / SURVIVORS_FILE)} - known)
     ]
 
 
-def _read_survivors(file: Path) -> list[_ListedSurvivor]:
+def read_survivors(file: Path) -> list[_ListedSurvivor]:
+    """Return the entries of a file of survivors; a missing file has none. Errors: `RuleError` for an invalid file."""
     if not file.is_file():
         return []
     try:

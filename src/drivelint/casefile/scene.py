@@ -14,10 +14,10 @@ import duckdb
 from drivelint.catalogue.check import collect_problems, raise_problems
 from drivelint.errors import RuleError
 from drivelint.phrases import hint
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
 
@@ -57,7 +57,7 @@ def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals:
     problems: list[str] = []
     for table, blocks in given_tables.items():
         with collect_problems(problems):
-            scene[table] = _table_rows(table, blocks)
+            scene[table] = rows_of_blocks(table, blocks, f"given: {table}")
     raise_problems(problems)
     clock = scene.pop("clock", [{}])
     scene["step"] = _step_rows(scene, clock[0].get("max_gap_ns"))
@@ -83,15 +83,44 @@ def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals:
     return scene
 
 
-def _table_rows(table: str, blocks: Any) -> list[Row]:
-    """Return the rows that the blocks of one table describe. Errors: `RuleError`."""
+def complete_table_scene(reads: Collection[str], given_tables: Mapping[str, Any], map_id: str) -> dict[str, list[Row]]:
+    """Return the rows of the tables that a SELECT reads: those of the case, and clocks, steps and logs that it does not give.
+
+    `map_id`: the map of rows that name none. Errors: `RuleError` with a line for each wrong table, column or word.
+    """
+    scene: dict[str, list[Row]] = {}
+    problems: list[str] = []
+    for table, blocks in given_tables.items():
+        with collect_problems(problems):
+            scene[table] = rows_of_blocks(table, blocks, f"given: {table}")
+    raise_problems(problems)
+    if computed := {"step", "clock", "ego_clock"} & set(reads):
+        said = {table: scene.pop(table, [{}]) for table in ("clock", "ego_clock")}
+        clocks = said["clock"] if said["clock"] != [{}] else said["ego_clock"]
+        steps = _step_rows(scene, clocks[0].get("max_gap_ns"))
+        scene |= {"step": steps, "clock": _clock_rows(steps, clocks), "ego_clock": _clock_rows(steps, clocks)}
+        for table in {"step", "clock", "ego_clock"} - computed:
+            del scene[table]
+    if "data_log" in reads:
+        drives = dict.fromkeys(row["drive_id"] for rows in scene.values() for row in rows if "drive_id" in row)
+        logged = {row["drive_id"] for row in scene.get("data_log", ())}
+        new = [{"drive_id": drive, "sha256": f"hash of {drive}"} for drive in drives if drive not in logged]
+        scene["data_log"] = [*scene.get("data_log", ()), *new]
+    for table, rows in scene.items():
+        if "environment_id" in _column_defaults()[table]:
+            scene[table] = [{"environment_id": map_id, **row} for row in rows]
+    return scene
+
+
+def rows_of_blocks(table: str, blocks: Any, where: str) -> list[Row]:
+    """Return the rows that the blocks of one table describe. Errors: `RuleError`, with `where` the blocks stand."""
     if table not in _column_defaults():
         raise RuleError(f"given: there is no table {table!r}; {hint(table, _column_defaults())}")
     rows: list[Row] = []
     for block in blocks if isinstance(blocks, list) else [blocks]:
         if not isinstance(block, dict):
-            raise RuleError(f"given: {table}: a block is 'column: value' pairs, not {block!r}")
-        rows += _block_rows(table, block, f"given: {table}")
+            raise RuleError(f"{where}: a block is 'column: value' pairs, not {block!r}")
+        rows += _block_rows(table, block, where)
     return rows
 
 
@@ -138,7 +167,7 @@ def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
 
     `value` may also be a list, or a mapping of times to words.
     """
-    known = store.word_columns()[table].get(column)
+    known = declarations.word_columns()[table].get(column)
     if known is None:
         return
     for word in _texts_in_value(value, known.field):

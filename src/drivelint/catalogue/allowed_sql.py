@@ -9,7 +9,7 @@ from typing import Final
 
 from drivelint.facts import toml_beside
 from drivelint.phrases import nearest_word
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each reference point is judged."""
@@ -39,8 +39,8 @@ def functions() -> frozenset[str]:
 @cache
 def tables() -> frozenset[str]:
     """Return the tables that a rule may read: the tables of `schemas/` except outputs, and `ENGINE_TABLES`."""
-    outputs = {table for file in _OUTPUT_SCHEMAS for table in store.column_comments(file)}
-    return frozenset(store.column_comments().keys() - outputs) | ENGINE_TABLES
+    outputs = {table for file in _OUTPUT_SCHEMAS for table in declarations.column_comments(file)}
+    return frozenset(declarations.column_comments().keys() - outputs) | ENGINE_TABLES
 
 
 def unknown_table_message(name: str) -> str:

@@ -24,7 +24,7 @@ from drivelint.catalogue.rule_words import refuse_wrong_words
 from drivelint.errors import RuleError
 from drivelint.phrases import hint, nearest_word
 from drivelint.reasons.reason_text import texts_of_shared_codes
-from drivelint.sql import store
+from drivelint.sql import declarations
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -151,7 +151,7 @@ def _disagreements(
 
 def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozenset[str]:
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
-    declared = store.input_quantities_by_column()
+    declared = declarations.input_quantities_by_column()
     # an event table named in the header provides all its columns: only columns that other sections name count
     named = {
         name
@@ -215,7 +215,7 @@ def _event_table_section(table: str, sections: dict[str, Section], file: Path, l
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
         )
-    columns = store.column_comments().get(table, {})
+    columns = declarations.column_comments().get(table, {})
     if not set(_KEY_COLUMNS) <= columns.keys():
         raise RuleError(
             f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"

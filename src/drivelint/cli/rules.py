@@ -114,11 +114,14 @@ def run_tests(
     mutate: Annotated[
         bool, option("--mutate", None, "Change each rule in many ways, and check that some case notices each change.")
     ] = False,
+    tables: Annotated[
+        Texts, option("--table", "TABLE", "Test this table of the library, or glob, instead of rules. Repeatable.")
+    ] = None,
     watch: Annotated[
         bool, option("--watch", None, "Then test a rule again whenever its file or its cases are saved, until Ctrl-C.")
     ] = False,
 ) -> None:
-    """Run the test cases beside the rules.
+    """Run the test cases beside the rules, or beside tables of the library.
 
     Each case is a small scene with the expected verdict. With --mutate: checks whether the cases detect a wrong sense,
     threshold or window, or a missing condition.
@@ -140,6 +143,9 @@ def run_tests(
             shown.advance()
 
         over, names = Event(), tuple(only or ())
+        if tables:
+            test_tables = commands.table_mutation_test if mutate else commands.table_case_test
+            raise typer.Exit(int(run_interruptible(lambda: test_tables(tuple(tables), say))))
         if watch:
             code = run_interruptible(lambda: commands.repeat_tests_on_changes(test, folder, names, say, over), over.set)
         else:

@@ -14,6 +14,7 @@ import duckdb
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
 from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, needed_derivations
+from drivelint.sql.library import library_tables
 from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
@@ -103,4 +104,4 @@ def _fill_table(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
     except duckdb.OutOfMemoryException:
         raise  # not an error of the query: the caller may have more memory
     except duckdb.Error as error:
-        raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error
+        raise DriveLintError(f"{library_tables()[step.table].short_path}: {str(error).splitlines()[0]}") from error

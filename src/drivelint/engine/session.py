@@ -21,7 +21,7 @@ from drivelint.engine.set_aside import move_large_tables_to_disk
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.sql.derivations import (
     TABLES_NEEDED_FOR_DRIVES,
     TABLES_NEEDED_FOR_RULES,
@@ -223,9 +223,9 @@ class JudgingSession:
                     return False
                 # the kept database contains every ego, so `deferred_ego` is not copied
                 self._append_to_kept_database(
-                    (t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), has_shared_rows=no > 0
+                    (t for t in declarations.tables_of_lifetime("part") if t != "deferred_ego"), has_shared_rows=no > 0
                 )
-            self._append_to_kept_database(store.tables_of_lifetime("drive"))
+            self._append_to_kept_database(declarations.tables_of_lifetime("drive"))
             undo.pop_all()
         return True
 
@@ -253,7 +253,7 @@ class JudgingSession:
         if self._margins:
             self._margins.close()
         if self._kept:
-            self._append_to_kept_database(store.tables_of_lifetime("run"))
+            self._append_to_kept_database(declarations.tables_of_lifetime("run"))
             self._con.execute("DETACH kept")
             self._kept = None
 
@@ -262,11 +262,11 @@ class JudgingSession:
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new maps are complete: a failure here must not leave half a map
             # an earlier session may have left its map in the database
-            self._con.execute(";".join(f"DELETE FROM {table}" for table in store.tables_of_lifetime("map")))
+            self._con.execute(";".join(f"DELETE FROM {table}" for table in declarations.tables_of_lifetime("map")))
             for id_, environment in sorted(environments.items()):
                 known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
                 for table, rows in environment.tables.items():
-                    if not (known and store.lifetimes()[table] == "run"):
+                    if not (known and declarations.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
             derive(self._con, self._tables, are_map_tables=True, always_needed_tables=self._also)
             self._maps = frozenset(environments)
@@ -286,7 +286,7 @@ class JudgingSession:
     def _tables_to_fill(self, *lifetimes: str) -> list[str]:
         """Return the tables of these lifetimes that get rows: those of a log, and the derived tables that the rules need."""
         unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
-        return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
+        return [table for table in declarations.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
     def _attach_kept_database(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -301,14 +301,14 @@ class JudgingSession:
         if not self._kept:
             return
         for table in tables:
-            whole = has_shared_rows and ("ego_id" not in store.column_comments()[table] or table == "ego_clock")
+            whole = has_shared_rows and ("ego_id" not in declarations.column_comments()[table] or table == "ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
             self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
     def _append_maps_to_kept(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
         if self._kept and new:
-            for table in store.tables_of_lifetime("map"):
+            for table in declarations.tables_of_lifetime("map"):
                 self._con.execute(
                     f"INSERT INTO kept.{table} SELECT * FROM {table} WHERE list_contains(?, environment_id)", [new]
                 )
@@ -316,14 +316,16 @@ class JudgingSession:
 
     def _delete_drives(self, ids: Sequence[str]) -> None:
         self._delete_except_in_kept_database(ids)
-        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # some parts may have been copied
+        for table in (
+            declarations.tables_of_lifetime("drive", "part") if self._kept else ()
+        ):  # some parts may have been copied
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
     def _delete_except_in_kept_database(self, ids: Sequence[str]) -> None:
         """Delete the rows of these drives from the database, but not from the kept database, which never contains copies."""
         store.recreate_empty(self._con, self._tables_to_fill("drive", "part"))
-        for table in store.tables_of_lifetime("run"):
-            if "drive_id" in store.column_comments()[table]:
+        for table in declarations.tables_of_lifetime("run"):
+            if "drive_id" in declarations.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
@@ -341,7 +343,7 @@ def _drive_ids(drives: Iterable[Drive]) -> list[str]:
 
 
 def _actor_ids(drives: Iterable[Drive]) -> set[str]:
-    held = set(store.tables_of_lifetime("drive", "part"))
+    held = set(declarations.tables_of_lifetime("drive", "part"))
     tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
     columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_ID_COLUMNS]
     return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}

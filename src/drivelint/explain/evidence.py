@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue.required_value_parts import read_parts
 from drivelint.explain.model import RequiredValuePart, Step, TableRows
 from drivelint.reasons import reason_text
-from drivelint.sql import store
+from drivelint.sql import declarations
 from drivelint.sql.syntax import with_values
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def rows_read_by_rule(
         return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in told], 0)]
     found = []
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
-        columns = list(store.column_comments().get(table, {}))
+        columns = list(declarations.column_comments().get(table, {}))
         if "drive_id" in columns or table == "profile":
             found.append(_rows_of_table(target, sandbox, table, columns, t_ns))
     return found

@@ -17,7 +17,7 @@ from drivelint.engine.robustness.copies import with_drive_id
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -109,7 +109,7 @@ def _drive_from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
         environment = None
         if place is not None:
             # nothing is derived from map_quality
-            known = [name for name in store.column_comments("map") if name != "map_quality"]
+            known = [name for name in declarations.column_comments("map") if name != "map_quality"]
             road = {name: _rows_with_key(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)

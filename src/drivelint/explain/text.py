@@ -19,7 +19,7 @@ from drivelint.phrases import one_line
 from drivelint.reasons.signals import UNRECORDED_PREFIX, remedy, unknown_condition_column
 from drivelint.result.text import breach_title, ego_name, replace_non_finite, seconds
 from drivelint.result.text_templates import text_template
-from drivelint.sql import store
+from drivelint.sql import declarations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -171,7 +171,7 @@ def _lines_on_row(explanation: Explanation, table: str, row: Row) -> list[str]:
     named = [
         column for column in row if column == asked or table == "capability" or re.search(rf"\b{column}\b", sql)
     ] or list(row)
-    wide, comments = max(map(len, named)), store.column_comments().get(table, {})
+    wide, comments = max(map(len, named)), declarations.column_comments().get(table, {})
     start_ns = explanation.drive["t_start_ns"] or 0
     return [
         f"{column:<{wide}}  {_cell_text(column, row[column], start_ns):<12}  {_column_comment(comments.get(column, ''), row[column])}"

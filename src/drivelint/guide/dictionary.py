@@ -1,6 +1,7 @@
 """Makes the reference from the sources: the data dictionary, the reason codes with their texts, and the macros for SQL.
 
-The data dictionary has every table of `schemas/*.sql` with its columns, their vocabularies, and the tables from which it is derived.
+The data dictionary has every table of `schemas/*.sql` and `queries/library` with its columns, their vocabularies, and the tables that it
+reads.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from drivelint.result import geometry
 from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
+from drivelint.sql.declarations import column_comments, lifetimes
 from drivelint.sql.derivations import derivations
-from drivelint.sql.store import column_comments, lifetimes
+from drivelint.sql.library import library_tables
 from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
@@ -43,14 +45,20 @@ _MARKUP_CHARACTERS: Final = re.compile(r"([\\`*_\[\]<>~&])")
 _HEADING_BY_SCHEMA_FILE: Final = {
     "model": "The recorded drive",
     "map": "The map",
-    "derived": "Derived: positions, lanes, overtakes",
-    "conduct": "Derived: conditions and conduct",
-    "junctions": "Derived: junctions",
+    "profile": "Driving profiles",
+    "library/log": "Derived: time and inputs of a log",
+    "library/map": "Derived: the prepared map",
+    "library/motion": "Derived: motion",
+    "library/lanes": "Derived: lanes",
+    "library/others": "Derived: other road users",
+    "library/overtakes": "Derived: overtakes",
+    "library/junctions": "Derived: junctions and crossings",
+    "library/sight": "Derived: what cannot be seen",
     "verdict": "Verdicts",
     "output": "Drives and rules",
     "evidence": "Evidence for the report",
 }
-"""File of `schemas/` -> the heading of its tables."""
+"""File of `schemas/`, or topic of the library -> the heading of its tables."""
 _LIFETIME_WORDS: Final = {
     "map": "as long as batches use the map",
     "drive": "while its batch of drives is judged",
@@ -176,12 +184,8 @@ def _tables_read_by_rules() -> list[tuple[str, tuple[str, ...]]]:
 
 
 def _derivation_comment(name: str) -> str:
-    """Return the comment before the SELECT that fills a table; '' without one."""
-    if name not in derivations():
-        return ""
-    head = re.match(r"(?:--.*\n)*", derivations()[name].sql)
-    lines = head[0].splitlines() if head else []
-    return " ".join(line.removeprefix("--").strip() for line in lines)
+    """Return what a library table is; '' for another table."""
+    return library_tables()[name].description if name in library_tables() else ""
 
 
 def _column_table(name: str, *, in_file: bool = False) -> str:

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from drivelint.pack import finding_sql
 from drivelint.pack.finding_sql import COMPARED_FINDING_COLUMNS
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -158,7 +158,7 @@ def _time_condition_sql(columns: Sequence[str], start_ns: int, end_ns: int) -> s
 
 
 def _parquet_bytes(table_name: str, rows: pa.Table) -> bytes:
-    comments = store.column_comments().get(table_name, {})
+    comments = declarations.column_comments().get(table_name, {})
     described = rows.schema.remove_metadata()
     for i, field in enumerate(described):
         metadata = {"comment": comments[field.name]} if field.name in comments else None

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 
 from drivelint.result.geometry import with_geometry
 from drivelint.result.schemas import OUTPUT_VERSION, conform
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

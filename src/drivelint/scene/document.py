@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import msgspec
 import yaml
 
-from drivelint.casefile import OnOffAsTextLoader
+from drivelint.casefile.case_list import OnOffAsTextLoader
 from drivelint.errors import SceneFileError, UsageError
 from drivelint.phrases import hint
 from drivelint.scene.strange_words import problems

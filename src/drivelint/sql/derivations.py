@@ -1,7 +1,4 @@
-"""The library tables: each file `queries/derive/<table>.sql` is one SELECT that fills the table of that name.
-
-The tables that a SELECT reads determine the order of the derivations.
-"""
+"""The order in which the library tables are filled: the tables that a SELECT reads are filled before."""
 
 from __future__ import annotations
 
@@ -13,15 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import DriveLintError
 from drivelint.memo import Memo
-from drivelint.resources import folder
-from drivelint.sql.store import column_comments, lifetimes
+from drivelint.sql.declarations import lifetimes
+from drivelint.sql.library import library_tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
-
 _OCCASION: Final = re.compile(r"^-- occasion: (\w+(?:, \w+)*)$", re.MULTILINE)
-_TABLES_FROM_TOML = {"profile"}  # filled from queries/profiles.toml
 TABLES_NEEDED_FOR_DRIVES: Final = (
     "clock",
     "step",
@@ -62,29 +56,18 @@ class Derivation:
 @cache
 def derivations() -> dict[str, Derivation]:
     """Return table -> derivation, ordered so that each derivation follows the tables that it reads."""
-    if missing := sorted(column_comments("derived").keys() - _file_by_table().keys() - _TABLES_FROM_TOML):
-        raise DriveLintError(
-            f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
-        )
-    return {each.table: each for each in _derivations_with_sources(_file_by_table())}
-
-
-@cache
-def _file_by_table() -> dict[str, Path]:
-    return {file.stem: file for file in sorted((folder("queries") / "derive").glob("*.sql"))}
+    return {each.table: each for each in _derivations_with_sources(library_tables())}
 
 
 @cache
 def _derivation(table: str) -> Derivation:
     """Return the derivation of one table. Only this file is parsed: parsing all files takes longer than judging a short drive."""
-    file = _file_by_table()[table]
-    if table not in column_comments():
-        raise DriveLintError(f"{file}: no table {table!r} in schemas/")
-    sql = file.read_text(encoding="utf-8")
+    file = library_tables()[table]
+    sql = file.select
     reads, needs, occasion = _READS_BY_SQL.find_or_compute(
-        sql, lambda: _tables_read_tables_needed_and_occasion(sql, str(file))
+        sql, lambda: _tables_read_tables_needed_and_occasion(sql, str(file.path))
     )
-    return Derivation(table, sql, reads & _file_by_table().keys() - {table}, needs, occasion)
+    return Derivation(table, sql, reads & library_tables().keys() - {table}, needs, occasion)
 
 
 _Reads = tuple[frozenset[str], frozenset[str], str]
@@ -112,7 +95,7 @@ def _tables_read_tables_needed_and_occasion(sql: str, where: str) -> _Reads:
 def _derivations_with_sources(tables: Iterable[str]) -> list[Derivation]:
     """Return the derivations of these tables and of all tables that they read, in order; other tables are skipped."""
     graph: dict[str, list[str]] = {}
-    todo = [table for table in tables if table in _file_by_table()]
+    todo = [table for table in tables if table in library_tables()]
     while todo:
         table = todo.pop()
         if table not in graph:
@@ -123,7 +106,7 @@ def _derivations_with_sources(tables: Iterable[str]) -> list[Derivation]:
 
 def derived_tables() -> frozenset[str]:
     """Return the names of the tables that have a derivation."""
-    return frozenset(_file_by_table())
+    return frozenset(library_tables())
 
 
 def tables_with_sources(tables: Iterable[str]) -> frozenset[str]:
@@ -133,7 +116,7 @@ def tables_with_sources(tables: Iterable[str]) -> frozenset[str]:
 
 @cache
 def _table_with_sources(table: str) -> frozenset[str]:
-    reads = _derivation(table).reads if table in _file_by_table() else ()
+    reads = _derivation(table).reads if table in library_tables() else ()
     return frozenset({table}).union(*map(_table_with_sources, reads))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 
 _SUGGESTION: Final = re.compile(r'\s*Did you mean "(?:pg_|duckdb_|sqlite_|information_schema)[^"]*"\?')
 _MISSING_TABLE: Final = re.compile(r"Table with name (\w+) does not exist!(?!\s*Did you mean)")

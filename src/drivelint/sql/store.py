@@ -1,4 +1,4 @@
-"""The DuckDB database: opened offline with its spatial extension, with tables created from `schemas/*.sql`."""
+"""The DuckDB database: opened offline with its spatial extension, with tables created from `schemas/*.sql` and `queries/library`."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import re
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
-from drivelint.resources import folder
 from drivelint.sql import progress_bar, words
+from drivelint.sql.declarations import column_comments, column_lists, create_statements, lifetimes, word_columns
 from drivelint.sql.kept_schemas import cached_schemas
 from drivelint.sql.statements import statement_texts
 from drivelint.temporary import temporary_folder
@@ -23,19 +23,11 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-_TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
-_LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
-TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
-"""How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
-one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns with the id of an actor."""
 _TABLES_WITH_TEXT_IDS = frozenset({"margin"})
 """Tables with ids from a rule's SQL: the rule may return an actor id that no log contains."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
-_COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
-_QUANTITIES = re.compile(r"\{([a-z, ]+)\}$")
-"""Matches the end of a column's comment: the quantities, of the ego or another actor, from which the column is computed."""
 
 
 def quoted(text: object) -> str:
@@ -228,43 +220,6 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 
 
 @cache
-def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
-    """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all files), in file order."""
-    return {
-        table: {column: words.readable_comment(_QUANTITIES.sub("", comment).rstrip()) for column, _, comment in columns}
-        for table, columns in _column_declarations(file).items()
-    }
-
-
-@cache
-def _column_declarations(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
-    """Return table -> its columns as (name, type, comment); the raw comment includes the mark of a vocabulary, see `words`."""
-    return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_schema_sql(file))}
-
-
-@cache
-def word_columns() -> dict[str, dict[str, words.WordColumn]]:
-    """Return table -> column -> its vocabulary, for the columns with words of a vocabulary."""
-    return {
-        table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
-        for table, columns in _column_declarations().items()
-    }
-
-
-@cache
-def input_quantities_by_column() -> dict[str, dict[str, frozenset[str]]]:
-    """Return table -> column -> the quantities of actors from which it is computed, if its comment ends in a list of quantities."""
-    return {
-        table: {
-            name: frozenset(made_of[1].split(", "))
-            for name, _, comment in columns
-            if (made_of := _QUANTITIES.search(comment))
-        }
-        for table, columns in _column_declarations().items()
-    }
-
-
-@cache
 def arrow_schemas() -> dict[str, pa.Schema]:
     """Return table -> Arrow schema for every table of `schemas/`, as DuckDB exports its rows.
 
@@ -289,28 +244,6 @@ def table_with_owner_id(
     table = pa.table(columns, schema=pa.schema(others))
     words.refuse_wrong_words(table, word_columns()[name], f"reader {reader}: table {name}")
     return table.add_column(0, first, pa.repeat(pa.scalar(owner_id), table.num_rows))
-
-
-@cache
-def _schema_sql(file: str = "*") -> str:
-    return "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder("schemas").glob(f"{file}.sql")))
-
-
-@cache
-def lifetimes() -> dict[str, str]:
-    """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
-    found = {table: lifetime for lifetime, table in _LIFETIME.findall(_schema_sql())}
-    for table in column_comments():
-        if found.get(table) not in TABLE_LIFETIMES:
-            raise DriveLintError(
-                f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(TABLE_LIFETIMES)} above it"
-            )
-    return found
-
-
-def tables_of_lifetime(*kinds: str) -> list[str]:
-    """Return the tables with these lifetimes, in the order of the files."""
-    return [table for table in column_comments() if lifetimes()[table] in kinds]
 
 
 def recreate_with_enums(
@@ -340,9 +273,9 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     types = {}
     if codes := _enum_numbers(con):
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
-    bodies, made = dict(_TABLE.findall(_schema_sql())), list[str]()
+    made: list[str] = []
     for table in tables:
-        body = bodies[table]
+        body = column_lists()[table]
         as_text = (
             table in _TABLES_WITH_TEXT_IDS or lifetimes()[table] == "run"
         )  # such a table has the ids of several batches
@@ -368,7 +301,7 @@ def create_macros(con: duckdb.DuckDBPyConnection) -> None:
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:
     """Create every table of `schemas/*.sql`, with `comments` including the comments of its columns."""
-    con.execute(_schema_sql())
+    con.execute(create_statements())
     for table, columns in column_comments().items() if comments else ():
         con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cache, partial, reduce
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.sql import store, syntax, word_types
+from drivelint.sql import declarations, syntax, word_types
 from drivelint.sql.macro_trees import macro, macro_texts
 from drivelint.sql.word_functions import compared_words, possible_words_of_call
 from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, union_of_relations, with_column_names
@@ -61,7 +61,7 @@ def wrong_words_in_columns(table: str, relation: Relation) -> list[WrongWord]:
 
     The columns of a UNION, matched by position, have the names in its first query.
     """
-    known = store.word_columns()[table]
+    known = declarations.word_columns()[table]
     found = []
     for name, kind in relation.columns:
         column = word_types.possible_words_of_column(known[name]) if name in known else None
@@ -83,7 +83,7 @@ def check_macro(name: str) -> list[WrongWord]:
 
 @cache
 def _relation_by_table() -> dict[str, Relation]:
-    columns = store.word_columns()
+    columns = declarations.word_columns()
     return {
         table: Relation(
             [
@@ -91,7 +91,7 @@ def _relation_by_table() -> dict[str, Relation]:
                 for name in names
             ]
         )
-        for table, names in store.column_comments().items()
+        for table, names in declarations.column_comments().items()
     }
 
 
@@ -99,7 +99,7 @@ def _relation_by_table() -> dict[str, Relation]:
 def _possible_words_by_column() -> dict[str, WordType]:
     """Return column -> its possible values, for columns with the same values in every table that has them."""
     found: dict[str, list[WordType]] = {}
-    for columns in store.word_columns().values():
+    for columns in declarations.word_columns().values():
         for name, column in columns.items():
             found.setdefault(name, []).append(word_types.possible_words_of_column(column))
     return {name: kinds[0] for name, kinds in found.items() if all(kind == kinds[0] for kind in kinds)}

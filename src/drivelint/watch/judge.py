@@ -23,7 +23,7 @@ from drivelint.errors import DriveLintError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.result import collect
-from drivelint.sql import store
+from drivelint.sql import declarations, store
 from drivelint.watch import contact
 from drivelint.watch.contact import ContactFinder
 
@@ -123,7 +123,7 @@ class WindowJudge:
 
         `drive_start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """
-        store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _LASTING_TABLES])
+        store.recreate_empty(self._con, [t for t in declarations.tables_of_lifetime("run") if t not in _LASTING_TABLES])
         self._session.forget_judged_logs()
         found: dict[str, JudgedWindow | DriveLintError] = {}
         drives: dict[str, Drive] = {}

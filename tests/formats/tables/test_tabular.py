@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from drivelint.errors import TraceError
-from drivelint.sql.store import column_comments
+from drivelint.sql.declarations import column_comments
 from tests.formats.logs import LONG, actors, at, cars, log, mapping, put, quality, read, states, table
 
 if TYPE_CHECKING:

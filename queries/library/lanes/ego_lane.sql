@@ -1,0 +1,63 @@
+-- One drivable lanelet per ego step. If several lanelets overlap (in junctions), the lanelet that links the last certain lanelet to the
+-- next one is taken. Of several such lanelets, it is the one that covers most steps between the two certain lanelets, then the one with the
+-- best heading.
+-- lifetime: part
+CREATE TABLE ego_lane (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    ego_id VARCHAR NOT NULL,          -- the ego
+    t_ns BIGINT NOT NULL,             -- the step
+    lanelet_id VARCHAR,               -- the drivable lanelet that the ego is on, one per step; in junctions, the lanelet on the ego's path; NULL: none
+    s_m DOUBLE,                       -- station along the lanelet {position}
+    d_m DOUBLE,                       -- offset from the lanelet's centre line, left of travel positive {position}
+    half_width_m DOUBLE,              -- half the lanelet's width there
+    with_direction BOOLEAN,           -- the heading is within 90 degrees of the lane's direction {heading}
+    with_traffic BOOLEAN              -- with_direction, or the lane is driven in both directions {position}
+);
+
+INSERT INTO ego_lane BY NAME
+WITH lanelet_candidate AS (
+    SELECT
+        st.drive_id, st.ego_id, st.t_ns, st.k, l.environment_id, o.lanelet_id, o.s_m, o.d_m, o.half_width_m,
+        abs(o.heading_diff_rad) AS heading_off_rad, o.heading_diff_rad,
+        count(o.lanelet_id) OVER (PARTITION BY st.drive_id, st.ego_id, st.t_ns) AS n_candidates
+    FROM step st
+    JOIN data_log l USING (drive_id)
+    LEFT JOIN lane_occupancy o ON o.drive_id = st.drive_id AND o.actor_id = st.ego_id AND o.t_ns = st.t_ns AND o.drivable
+),
+certain_lanelet AS (
+    SELECT
+        drive_id, ego_id, k,
+        last_value(certain_id IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS before_id,
+        last_value(certain_k IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS before_k,
+        first_value(certain_id IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id ORDER BY k ROWS BETWEEN CURRENT ROW AND UNBOUNDED FOLLOWING) AS after_id
+    FROM (
+        SELECT drive_id, ego_id, k, any_value(CASE WHEN n_candidates = 1 THEN lanelet_id END) AS certain_id, any_value(CASE WHEN n_candidates = 1 THEN k END) AS certain_k
+        FROM lanelet_candidate
+        GROUP BY ALL
+    )
+),
+scored_candidate AS (
+    SELECT
+        c.*,
+        (b.hops IS NOT NULL)::INTEGER + (a.hops IS NOT NULL)::INTEGER AS n_links,
+        count(*) OVER (PARTITION BY c.drive_id, c.ego_id, s.before_k, c.lanelet_id) AS n_covered
+    FROM lanelet_candidate c
+    JOIN certain_lanelet s USING (drive_id, ego_id, k)
+    LEFT JOIN lane_near b ON b.environment_id = c.environment_id AND b.from_id = s.before_id AND b.to_id = c.lanelet_id
+    LEFT JOIN lane_near a ON a.environment_id = c.environment_id AND a.from_id = c.lanelet_id AND a.to_id = s.after_id
+    WHERE c.n_candidates > 1
+),
+best_candidate AS (
+    SELECT
+        drive_id, ego_id, t_ns,
+        min({'n_links': -n_links, 'n_covered': -n_covered, 'heading_off_rad': heading_off_rad, 'off_m': abs(d_m), 'id': lanelet_id, 's_m': s_m}) AS best
+    FROM scored_candidate
+    GROUP BY ALL
+)
+SELECT
+    c.drive_id, c.ego_id, c.t_ns, c.lanelet_id, c.s_m, c.d_m, c.half_width_m, c.heading_off_rad < pi() / 2 AS with_direction,
+    n.bidirectional OR c.heading_off_rad < pi() / 2 AS with_traffic
+FROM lanelet_candidate c
+LEFT JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id
+LEFT JOIN best_candidate b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.t_ns = c.t_ns
+WHERE c.n_candidates <= 1 OR (c.lanelet_id = b.best.id AND c.s_m = b.best.s_m)

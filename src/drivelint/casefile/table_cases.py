@@ -1,0 +1,194 @@
+"""Reads and runs `<table>.cases.yml`, the regression cases beside the tables of the library.
+
+A case gives rows of the tables that the SELECT reads, and all rows that the SELECT must return:
+
+    - name: the nearer of two vehicles is the lead
+      given:
+        ego_state: {t_s: 0..1 by 0.5, speed_mps: 10, front_s_m: 5}
+        lane_ahead:
+          - {t_s: 0..1 by 0.5, object_id: x, gap_m: 30}
+          - {t_s: 0..1 by 0.5, object_id: y, gap_m: 20}
+      expect: {t_s: 0..1 by 0.5, object_id: y, gap_m: {else: 20, 1: 19.5}}
+
+* `given` and `expect` have the form of `given` in the cases of rules: blocks with scalars, lists, ranges, and values by time.
+* `step`, `clock` and `ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
+  drive has a row of `data_log`. The map is `m` where none is given.
+* Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
+  Numbers must agree to the written decimals, at least two. `expect: []` means: no row.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import duckdb
+import msgspec
+
+from drivelint.casefile import CaseResult, is_same_value
+from drivelint.casefile.case_list import parse_cases_file
+from drivelint.casefile.merged_cases import NumberedCase, merge_cases
+from drivelint.casefile.scene import Row, case_database, complete_table_scene, insert_rows, rows_of_blocks
+from drivelint.catalogue.check import error_message, raise_problems
+from drivelint.errors import RuleError
+from drivelint.sql import declarations, syntax
+from drivelint.sql.statements import statement, statement_texts
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+    from pathlib import Path
+
+    from drivelint.sql.library import LibraryTable
+
+_MAP: Final = "m"
+_CASE_NUMBER: Final = re.compile(r"(\d+):")
+_UNORDERED_TYPE: Final = re.compile(r"DOUBLE|FLOAT|GEOMETRY|STRUCT|.*\]", re.IGNORECASE)
+
+
+class TableCase(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """One case as written in the file."""
+
+    name: str
+    given_tables: dict[str, Any] = msgspec.field(name="given")
+    expect: dict[str, Any] | list[dict[str, Any]]
+    line: int = 0
+    """The case's line in the file, set by the reader."""
+
+
+class CompleteCase(NamedTuple):
+    """A case with all its rows. `place`: its file, line and name; `given`: its number in the file, and the rows that it gives."""
+
+    case: TableCase
+    place: str
+    given: NumberedCase
+    expected: list[Row]
+
+
+def cases_file(table: LibraryTable) -> Path:
+    """Return the file of a table's cases."""
+    return table.path.with_suffix(".cases.yml")
+
+
+def tables_read_by(table: LibraryTable) -> frozenset[str]:
+    """Return all tables that the SELECT of a table reads."""
+    tree = syntax.parse_select(table.select, str(table.path))
+    return syntax.tables_read(tree) & declarations.column_comments().keys()
+
+
+def read_table_cases(table: LibraryTable) -> list[CompleteCase]:
+    """Read the cases of a table. Errors: `RuleError` with a line for each problem, or if the file is missing."""
+    file = cases_file(table)
+    if not file.exists():
+        raise RuleError(f"{file}:1: table {table.name} has no cases")
+    cases, problems = parse_cases_file(file, TableCase)
+    reads = tables_read_by(table)
+    complete: list[CompleteCase] = []
+    for no, case in enumerate(cases):
+        place = f"{file}:{case.line}: case {case.name!r}"
+        try:
+            _refuse_unread_tables(table, case, reads)
+            scene = complete_table_scene(reads, case.given_tables, _MAP)
+            expected = rows_of_blocks(table.name, case.expect, "expect")
+        except RuleError as error:
+            problems += [f"{place}: {line}" for line in str(error).split("\n")]
+        else:
+            complete.append(CompleteCase(case, place, NumberedCase(no, scene, {}), expected))
+    raise_problems(problems)
+    return complete
+
+
+def _refuse_unread_tables(table: LibraryTable, case: TableCase, reads: Collection[str]) -> None:
+    if unread := sorted(case.given_tables.keys() - reads):
+        raise RuleError(f"given: {table.name} does not read {unread[0]!r}; it reads {', '.join(sorted(reads))}")
+
+
+def run_table_cases(table: LibraryTable) -> list[CaseResult]:
+    """Run the cases of a table together, as drives of one database, and return their results in order.
+
+    Errors: `RuleError` for a cases file that cannot be read, and for a SELECT that fails.
+    """
+    cases = read_table_cases(table)
+    with_rows = FilledCases(table, cases)
+    try:
+        found = with_rows.rows_by_case(table.select)
+    except duckdb.Error as error:
+        raise RuleError(f"{table.path}: {error_message(error)}") from error
+    finally:
+        with_rows.clear()
+    return [
+        CaseResult(each.case.name, not message, message and f"{each.place}: {message}")
+        for each in cases
+        for message in [rows_difference(table.name, each.expected, found.get(each.given.no, []))]
+    ]
+
+
+class FilledCases:
+    """The case database, filled with the rows of all cases of a table; call `clear` at the end."""
+
+    def __init__(self, table: LibraryTable, cases: Sequence[CompleteCase]) -> None:
+        self._con = case_database()
+        self._columns = ", ".join(declarations.column_comments()[table.name])
+        self._numbered_columns = [
+            c for c in ("drive_id", "environment_id") if c in declarations.column_comments()[table.name]
+        ]
+        scene = merge_cases([each.given for each in cases], "drive_id")
+        self._filled = list(scene)
+        try:
+            for name, rows in scene.items():
+                insert_rows(self._con, name, rows)
+            for name in statement_texts("map_shapes").keys() & scene.keys():
+                self._con.execute(statement(f"map_shapes/{name}"))
+        except BaseException:
+            self.clear()
+            raise
+
+    def rows_by_case(self, select: str) -> dict[int, list[Row]]:
+        """Return the rows of a SELECT for the table, by the number of the case. Errors: `duckdb.Error`."""
+        # into the table, so that the values have the declared types
+        found: dict[int, list[Row]] = {}
+        rows = self._con.execute(f"SELECT {self._columns} FROM (\n{select}\n)").to_arrow_table().to_pylist()
+        for row in rows:
+            number = 0
+            for column in self._numbered_columns:
+                if row[column] is not None and (marked := _CASE_NUMBER.match(row[column])):
+                    number, row[column] = int(marked[1]), row[column][marked.end() :]
+            found.setdefault(number, []).append(row)
+        return found
+
+    def clear(self) -> None:
+        """Delete the rows of all cases."""
+        self._con.execute(";".join(f"DELETE FROM {name}" for name in self._filled))
+
+
+def rows_difference(table: str, expected: Sequence[Row], rows: Sequence[Row]) -> str:
+    """Return how the rows differ from the expected ones, in one line; '' if they do not."""
+    if len(expected) != len(rows):
+        return f"expected {_count(expected)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
+    kinds = declarations.column_types()[table]
+    ordered = [c for c in kinds if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row for row in expected)]
+    pairs = zip(_in_order(expected, ordered), _in_order(rows, ordered), strict=True)
+    for wanted, row in pairs:
+        for column, value in wanted.items():
+            if not _is_same(value, row[column]):
+                return f"expected {column} = {value!r}, got {row[column]!r}: {_row_text(row)}"
+    return ""
+
+
+def _count(rows: Sequence[Row]) -> str:
+    return f"{len(rows)} row{'' if len(rows) == 1 else 's'}"
+
+
+def _in_order(rows: Sequence[Row], columns: Sequence[str]) -> list[Row]:
+    return sorted(rows, key=lambda row: [(row[c] is None, "" if row[c] is None else row[c]) for c in columns])
+
+
+def _is_same(expected: Any, actual: Any) -> bool:
+    if isinstance(expected, list) and isinstance(actual, list):
+        return len(expected) == len(actual) and all(map(_is_same, expected, actual))
+    if isinstance(expected, dict) and isinstance(actual, dict):
+        return all(key in actual and _is_same(value, actual[key]) for key, value in expected.items())
+    return is_same_value(expected, actual, 1)
+
+
+def _row_text(row: Mapping[str, Any]) -> str:
+    return "{" + ", ".join(f"{name}: {value}" for name, value in row.items() if value is not None) + "}"

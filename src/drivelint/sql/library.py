@@ -1,0 +1,63 @@
+"""Reads the library tables: each file `queries/library/<topic>/<table>.sql` describes one table, declares its columns, and fills it.
+
+A file has four parts: comment lines that say what the table is, `-- lifetime: ...`, `CREATE TABLE`, and `INSERT INTO ... BY NAME` with one
+SELECT. A table whose name begins with `_` is private: only other library tables and drivelint's own statements read it.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.errors import DriveLintError
+from drivelint.resources import folder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_FILE: Final = re.compile(
+    r"\A((?:--(?! lifetime:)[^\n]*\n)+)(-- lifetime: \w+\nCREATE TABLE (\w+) \(\n.*?^\);\n)\nINSERT INTO (\w+) BY NAME\n(.+)\Z",
+    re.DOTALL | re.MULTILINE,
+)
+
+
+class LibraryTable(NamedTuple):
+    """One file of the library. `declaration`: the CREATE TABLE with its lifetime; `select`: the SELECT that fills the table."""
+
+    name: str
+    topic: str
+    path: Path
+    description: str
+    declaration: str
+    select: str
+
+    @property
+    def short_path(self) -> str:
+        """The path below the folder `queries`, for messages."""
+        return f"queries/library/{self.topic}/{self.name}.sql"
+
+    @property
+    def is_private(self) -> bool:
+        """Whether only the library and drivelint's own statements may read the table."""
+        return self.name.startswith("_")
+
+
+@cache
+def library_tables() -> dict[str, LibraryTable]:
+    """Return table -> its file, ordered by topic and name. Errors: `DriveLintError` for a file without one of the four parts."""
+    files = sorted((folder("queries") / "library").glob("*/*.sql"))
+    if not files:
+        raise DriveLintError(f"{folder('queries') / 'library'}: there are no tables: reinstall drivelint")
+    return {file.stem: _read_file(file) for file in files}
+
+
+def _read_file(file: Path) -> LibraryTable:
+    found = _FILE.match(file.read_text(encoding="utf-8"))
+    if found is None or not found[3] == found[4] == file.stem:
+        raise DriveLintError(
+            f"{file}: write a comment, `-- lifetime: ...`, `CREATE TABLE {file.stem} (`, `);`, an empty line, "
+            f"`INSERT INTO {file.stem} BY NAME` and a SELECT"
+        )
+    description = " ".join(line.removeprefix("--").strip() for line in found[1].splitlines())
+    return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[5])
