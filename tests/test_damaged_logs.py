@@ -174,10 +174,10 @@ def test_an_annotation_that_fails_voids_no_verdict(tmp_path: Path, good: Path, m
 def test_what_was_declared_before_a_loss_is_not_known_after_it() -> None:
     with store.temporary_database(None) as con:
         fill(con)
-        derive(con, {"ego_mode", "signal_phase"}, are_map_tables=False)
+        derive(con, {"ego_mode", "_signal_phase"}, are_map_tables=False)
         modes = con.execute("SELECT t_ns, is_on FROM ego_mode ORDER BY t_ns").fetchall()
         assert modes == [(0, True), (10, True), (20, None), (30, False)]
-        phases = con.execute("SELECT t_from_ns, t_to_ns, state FROM signal_phase ORDER BY t_from_ns").fetchall()
+        phases = con.execute("SELECT t_from_ns, t_to_ns, state FROM _signal_phase ORDER BY t_from_ns").fetchall()
         assert phases == [(0, 13, "red"), (13, 30, None), (30, None, "green")]
 
 

@@ -28,7 +28,9 @@ OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
 TABLES = [
-    table for table in declarations.column_comments() if table not in ("drive", "rule", "visited_cell", "corridor_cell")
+    table
+    for table in declarations.column_comments()
+    if table not in ("drive", "rule", "_visited_cell", "_corridor_cell")
 ]
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"

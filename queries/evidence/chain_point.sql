@@ -1,6 +1,6 @@
 -- The points of the chains on which the danger spaces of overtake_space.sql lie.
 SELECT c.drive_id, c.ego_id, c.chain_id, c.s_start_m + p.s_m AS s_m, p.x_m, p.y_m, p.z_m, p.tx, p.ty
-FROM corridor c
+FROM _corridor c
 SEMI JOIN (
     SELECT e.drive_id, e.ego_id, e.chain_id
     FROM overtake_step o JOIN ego_state e USING (drive_id, ego_id, t_ns)

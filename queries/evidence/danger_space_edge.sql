@@ -21,7 +21,7 @@ piece AS (  -- the corridor's segments under a danger space, cut at its ends
         greatest(0.0, (x.s0 - c.s_start_m - g.s0_m) / g.len_m) AS u0, least(1.0, (x.s1 - c.s_start_m - g.s0_m) / g.len_m) AS u1
     FROM extent x
     JOIN chain c ON c.drive_id = x.drive_id AND c.ego_id = x.ego_id AND c.chain_id = x.chain_id
-    JOIN lane_segment g ON g.environment_id = x.environment_id AND g.lanelet_id = c.lanelet_id
+    JOIN _lane_segment g ON g.environment_id = x.environment_id AND g.lanelet_id = c.lanelet_id
     WHERE x.length_m > 0 AND g.len_m > 0 AND x.half_m IS NOT NULL
         AND c.s_start_m + g.s0_m < x.s1 AND c.s_start_m + g.s0_m + g.len_m > x.s0
 ),

@@ -12,7 +12,7 @@ sample AS (
     FROM state_dynamics s
     SEMI JOIN shown a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id
     ANTI JOIN track k ON k.drive_id = s.drive_id AND k.actor_id = s.actor_id
-    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c ON c.drive_id = s.drive_id
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id) c ON c.drive_id = s.drive_id
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL
     WINDOW w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns)
 ),

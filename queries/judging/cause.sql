@@ -18,7 +18,7 @@ WITH _unexplained_verdict AS (
     }) AS nearest
     FROM (SELECT DISTINCT drive_id, ego_id, t_ns FROM _unexplained_verdict WHERE of_hidden)
     JOIN hidden h USING (drive_id, ego_id, t_ns)
-    LEFT JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)
+    LEFT JOIN _unseen u USING (drive_id, ego_id, t_ns, object_id)
     LEFT JOIN _tracked k USING (drive_id, ego_id, object_id)
     LEFT JOIN pair p USING (drive_id, ego_id, t_ns, object_id)
     GROUP BY drive_id, ego_id, t_ns

@@ -3,7 +3,7 @@ INSERT INTO verdict BY NAME
 WITH _track_end_times AS (
     -- the first time at which the log loses an actor, and the last at which an actor comes into it
     SELECT drive_id, ego_id, min(t_ns) FILTER (lost) AS gone_ns, max(t_ns) FILTER (NOT lost) AS to_come_ns
-    FROM track_end GROUP BY ALL
+    FROM _track_end GROUP BY ALL
 ), _numbered AS MATERIALIZED (
     SELECT *, row_number() OVER (PARTITION BY drive_id, ego_id, rule_id, profile, object_id
         ORDER BY coalesce(t_ref_ns, t_start_ns) NULLS LAST, t_start_ns NULLS LAST, t_end_ns NULLS LAST,

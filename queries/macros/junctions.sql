@@ -48,7 +48,7 @@ CREATE OR REPLACE MACRO possible_turns(turn_rad) AS
     || CASE WHEN abs(turn_rad) >= radians(135) THEN ['u_turn'] ELSE [] END;
 -- A signal at most this far before a junction, with no other junction in between, governs the entry.
 CREATE OR REPLACE MACRO governed_m() AS 50.0;
--- near_mark has the steps from this far before a mark (a junction, a stop line or a crossing, see way_mark) until this far beyond it.
+-- _near_mark has the steps from this far before a mark (a junction, a stop line or a crossing, see way_mark) until this far beyond it.
 CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 -- A vehicle that turns into the ego's road this long after the ego may only follow it, or may have had to wait for it.
 CREATE OR REPLACE MACRO merging_s() AS 1.0;

@@ -242,7 +242,7 @@ def test_the_line_of_a_key() -> None:
         (PLACE_BEFORE, {"reference": REFERENCE}, "physical precondition: needs a section @anchor"),
         (EXECUTION, {"reference": "SELECT drive_id, ego_id FROM exit_taken"}, "must return drive_id, ego_id, t_ns"),
         (EXECUTION, {"reference": REFERENCE, "applies": SPEED}, "@applies is for invariants"),
-        (EXECUTION | {"reference": '"exit_lane"'}, {}, "reference = 'exit_lane' is no event table"),
+        (EXECUTION | {"reference": '"_exit_lane"'}, {}, "reference = '_exit_lane' is no event table"),
         (EXECUTION | {"reference": '"exit_taken"'}, {"reference": REFERENCE}, "names an event table already"),
         (EXECUTION | {"combine": '"any"'}, {"reference": REFERENCE}, "combine = 'any' needs the column object_id"),
         (

@@ -278,8 +278,8 @@ def test_one_that_comes_in_the_lane_in_which_the_ego_overtakes_is_ahead_of_it(ha
     assert not rows(con, "FROM vehicle_ahead WHERE NOT known")
     # one that is short and of no known class may be a vehicle: every such step is unknown
     small = replace(other, kind=None, length=2.0)
-    con = derived(drive([ego, small], way.environment), tables=["lane_ahead", "vehicle_ahead"])
-    near = {row["t_ns"] for row in rows(con, "FROM lane_ahead WHERE gap_m < lead_reach_m(12.0)")}
+    con = derived(drive([ego, small], way.environment), tables=["_lane_ahead", "vehicle_ahead"])
+    near = {row["t_ns"] for row in rows(con, "FROM _lane_ahead WHERE gap_m < lead_reach_m(12.0)")}
     unknown = {row["t_ns"] for row in rows(con, "FROM vehicle_ahead WHERE NOT known")}
     assert near
     assert near == unknown
@@ -301,8 +301,8 @@ def test_the_end_of_a_turned_box_meets_only_who_comes(hand: str, v: float, ahead
     other = moving("x", way, t, 112 - 2 * (t - 0.5), -way.own)
     if not v:
         other = replace(other, x=0 * t + other.x[5], y=0 * t + other.y[5], vx=0 * t, vy=0 * t)
-    con = derived(drive([ego, other], way.environment), tables=["lane_ahead"])
-    assert bool(rows(con, "FROM lane_ahead WHERE object_id = 'x' AND t_ns = 500000000")) == ahead
+    con = derived(drive([ego, other], way.environment), tables=["_lane_ahead"])
+    assert bool(rows(con, "FROM _lane_ahead WHERE object_id = 'x' AND t_ns = 500000000")) == ahead
 
 
 @pytest.mark.parametrize("turned", [math.pi / 2, math.pi / 3, -2.0])

@@ -176,9 +176,9 @@ def test_a_track_that_ends_or_begins_in_doubt_may_be_near(hand: str, quantity: s
     way = road(((1500.0, 0.0),), hand)
     other = moving("x", way, T, 510 + 10 * T, way.own).keep(T > 4.95 if appears else T < 3.05)
     told = drive([moving("ego", way, T, 100 + 10 * T, way.own), other], way.environment)
-    assert not rows(derived(told, tables=["unseen"]), "FROM unseen WHERE near")
+    assert not rows(derived(told, tables=["_unseen"]), "FROM _unseen WHERE near")
     told = doubted(told, "x", quantity, code, (4.95, 5.45) if appears else (2.55, 3.05))
-    found = rows(derived(told, tables=["unseen", "hidden"]), "FROM unseen WHERE object_id = 'x'")
+    found = rows(derived(told, tables=["_unseen", "hidden"]), "FROM _unseen WHERE object_id = 'x'")
     assert found
     assert all(row["near"] for row in found)
 
@@ -195,11 +195,11 @@ def test_a_track_that_ends_in_doubt_at_an_end_of_the_map_may_have_stayed_on_it(
     other = moving("x", way, t, 120 + 14 * t, way.own).keep(t < 26.95)
     told = drive([moving("ego", way, t, 50 + 12 * t, way.own), other], way.environment)
     ends = ("ahead_m", "behind_m", "off_ahead_m", "off_behind_m")
-    whole = rows(derived(told, tables=["unseen"]), "FROM unseen WHERE object_id = 'x'")
+    whole = rows(derived(told, tables=["_unseen"]), "FROM _unseen WHERE object_id = 'x'")
     assert any(row[name] is not None for row in whole for name in ends)
     found = rows(
-        derived(doubted(told, whose, quantity, code, (26.45, 27.0)), tables=["unseen"]),
-        "FROM unseen WHERE object_id = 'x'",
+        derived(doubted(told, whose, quantity, code, (26.45, 27.0)), tables=["_unseen"]),
+        "FROM _unseen WHERE object_id = 'x'",
     )
     assert len(found) >= len(whole) > 0
     assert {row[name] for row in found for name in ends} == {None}

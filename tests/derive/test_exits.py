@@ -23,8 +23,8 @@ def stayer(way: Road, end: float = 25.0) -> Actor:
 @pytest.mark.parametrize(("hand", "side", "lane"), [("rht", "right", -2), ("lht", "left", 2)])
 def test_the_lane_that_forks_off_is_the_exit_lane(hand: str, side: str, lane: int) -> None:
     way = exit_road(hand)
-    con = derived(drive([stayer(way)], way.environment), tables=["exit_lane"])
-    found = rows(con, "SELECT lanelet_id, from_id, side FROM exit_lane")
+    con = derived(drive([stayer(way)], way.environment), tables=["_exit_lane"])
+    found = rows(con, "SELECT lanelet_id, from_id, side FROM _exit_lane")
     assert [tuple(row.values()) for row in found] == [(f"1.0.{lane}", f"1.0.{lane // 2}", side)]
 
 
@@ -109,6 +109,6 @@ def test_the_exit_of_a_reference_map() -> None:
     environment = load_map(MapSource(source.name, source.read_bytes()))
     point = environment.tables["lane_point"].slice(0, 1).to_pylist()[0]
     way = Road(environment, ((10.0, 0.0),), (point["x_m"], point["y_m"], 0.0))
-    con = derived(drive([standing("ego", way, times(0.2), 1.0, 0.0)], environment), tables=["exit_lane"])
-    found = rows(con, "SELECT lanelet_id, from_id, side FROM exit_lane ORDER BY ALL")
+    con = derived(drive([standing("ego", way, times(0.2), 1.0, 0.0)], environment), tables=["_exit_lane"])
+    found = rows(con, "SELECT lanelet_id, from_id, side FROM _exit_lane ORDER BY ALL")
     assert [tuple(row.values()) for row in found] == [("0.1.-3", "0.1.-2", "right"), ("0.2.-3", "0.2.-2", "right")]

@@ -47,8 +47,8 @@ def test_on_it_half_by_half(hand: str) -> None:
     """Walks from y = -6 to +6 at 1.2 m/s: at y = -3.5 after 2.1 s, at 0 after 5 s, at 3.5 after 7.9 s."""
     way = zebra(hand)
     t = times(14)
-    con = derived(drive([going(way), walker("w", t, -6 + 1.2 * t)], way.environment), tables=["crossing_occupancy"])
-    found = rows(con, "FROM crossing_occupancy ORDER BY t_from_ns")
+    con = derived(drive([going(way), walker("w", t, -6 + 1.2 * t)], way.environment), tables=["_crossing_occupancy"])
+    found = rows(con, "FROM _crossing_occupancy ORDER BY t_from_ns")
     assert [(r["crossing_id"], r["object_id"]) for r in found] == [("x", "w")] * 2
     south, north = (
         (1, -1) if hand == "rht" else (-1, 1)
@@ -62,16 +62,16 @@ def test_cars_beside_it_and_people_beside_it_are_not_on_it() -> None:
     way = zebra()
     t = times(14)
     others = [walker("beside", t, -1.75, x=X - 0.5), walker("kerb", t, -4.5), walker("car", t, -1.75, kind="car")]
-    con = derived(drive([going(way), *others], way.environment), tables=["crossing_occupancy"])
-    assert not rows(con, "FROM crossing_occupancy")
+    con = derived(drive([going(way), *others], way.environment), tables=["_crossing_occupancy"])
+    assert not rows(con, "FROM _crossing_occupancy")
 
 
 def test_without_a_class_it_may_be_somebody_on_foot_and_a_hole_parts_two_stretches() -> None:
     way = zebra()
     t = times(14)
     some = walker("w", t, -1.75, kind=None)
-    con = derived(drive([going(way), some.keep((t < 5) | (t > 6))], way.environment), tables=["crossing_occupancy"])
-    found = rows(con, "FROM crossing_occupancy ORDER BY t_from_ns")
+    con = derived(drive([going(way), some.keep((t < 5) | (t > 6))], way.environment), tables=["_crossing_occupancy"])
+    found = rows(con, "FROM _crossing_occupancy ORDER BY t_from_ns")
     assert seconds(found, "t_from_ns") == [0.0, pytest.approx(6.1)]
     assert seconds(found, "t_to_ns") == [pytest.approx(4.9), pytest.approx(14.0)]
 

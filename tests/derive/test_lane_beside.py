@@ -302,8 +302,8 @@ def test_where_only_the_two_directions_go_on_there_is_no_junction(hand: str) -> 
     t = times(33.0)
     s = 5 + 12 * t
     ego, vbp = moving("ego", way, t, s, swing(way, s, 100, 195)), standing("vbp", way, t, 150, way.own)
-    con = derived(drive([ego, vbp], way.environment), tables=["junction_passage", "overtake_place", "road_half"])
-    halves = {(r["road_id"], r["of_road_id"], r["turned"]) for r in rows(con, "FROM road_half")}
+    con = derived(drive([ego, vbp], way.environment), tables=["junction_passage", "overtake_place", "_road_half"])
+    halves = {(r["road_id"], r["of_road_id"], r["turned"]) for r in rows(con, "FROM _road_half")}
     assert halves == {("5", "1", True), ("4", "2", True)}
     (passage,) = rows(con, "FROM junction_passage")
     assert passage["branches"] == 2

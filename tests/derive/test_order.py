@@ -36,7 +36,7 @@ def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str
 
 
 CLOCK = """SELECT drive_id, ego_id, max(cell) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
-FROM step JOIN visited_cell USING (drive_id) GROUP BY ALL"""
+FROM step JOIN _visited_cell USING (drive_id) GROUP BY ALL"""
 CELL = "SELECT drive_id, max(t_ns) AS cell FROM step GROUP BY drive_id"
 
 
@@ -59,7 +59,7 @@ def test_each_runs_after_what_it_reads(
 ) -> None:
     only(
         monkeypatch,
-        {"step": (STEP, set()), "visited_cell": (CELL, {"step"}), "clock": (CLOCK, {"step", "visited_cell"})},
+        {"step": (STEP, set()), "_visited_cell": (CELL, {"step"}), "clock": (CLOCK, {"step", "_visited_cell"})},
     )
     monkeypatch.setattr(derive, "LEAST_STATES_FOR_ONE_WORKER", large)  # on one connection, or on two
     told: list[str] = []
@@ -71,7 +71,7 @@ def test_each_runs_after_what_it_reads(
 
     monkeypatch.setattr(derive, "_fill_table", telling)
     derive.derive(con, ["clock"], are_map_tables=False, always_needed_tables=())
-    assert told == ["step", "visited_cell", "clock"]
+    assert told == ["step", "_visited_cell", "clock"]
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 
 
@@ -79,18 +79,22 @@ def test_each_runs_after_what_it_reads(
 def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, begins_late: bool
 ) -> None:
-    only(monkeypatch, {"visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
+    only(
+        monkeypatch, {"_visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())}
+    )
     fill = derive._fill_table
 
     def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
-        if begins_late and step.table == "visited_cell":
+        if begins_late and step.table == "_visited_cell":
             time.sleep(0.3)
         return fill(con, step)
 
     monkeypatch.setattr(derive, "_fill_table", late)
     with pytest.raises(DriveLintError, match=r"^queries/library/log/step\.sql: .*'x'"):
-        derive.derive(con, ["step", "visited_cell"], are_map_tables=False, always_needed_tables=())
-    assert con.execute("SELECT (SELECT count(*) FROM visited_cell), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
+        derive.derive(con, ["step", "_visited_cell"], are_map_tables=False, always_needed_tables=())
+    assert con.execute("SELECT (SELECT count(*) FROM _visited_cell), (SELECT count(*) FROM step)").fetchall() == [
+        (0, 0)
+    ]
 
 
 def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,10 +102,10 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
     con.execute("SET temp_directory = ''")
     only(
         monkeypatch,
-        {"visited_cell": ("SELECT 'd' AS drive_id, range AS cell FROM range(20000000) ORDER BY hash(range)", set())},
+        {"_visited_cell": ("SELECT 'd' AS drive_id, range AS cell FROM range(20000000) ORDER BY hash(range)", set())},
     )
     with pytest.raises(duckdb.OutOfMemoryException):
-        derive.derive(con, ["visited_cell"], are_map_tables=False, always_needed_tables=())
+        derive.derive(con, ["_visited_cell"], are_map_tables=False, always_needed_tables=())
 
 
 SAMPLES = (91, 91, 16, 91, 91, 34, 29, 23, 18, 17, 91)

@@ -217,8 +217,8 @@ def test_an_ego_that_stands_makes_no_way_by_jitter(jitter: float) -> None:
     rng = np.random.default_rng(1)
     ego = moving("ego", way, t, 100 + 8 * np.clip(t - 15, 0, None), way.own)
     ego = replace(ego, x=ego.x + jitter * rng.standard_normal(len(t)), y=ego.y + jitter * rng.standard_normal(len(t)))
-    con = derived(drive([ego], None), tables=["own_way"])
-    (driven,) = {round(row["driven_m"]) for row in rows(con, "FROM own_way")}
+    con = derived(drive([ego], None), tables=["_own_way"])
+    (driven,) = {round(row["driven_m"]) for row in rows(con, "FROM _own_way")}
     assert driven == pytest.approx(40, abs=1)
 
 

@@ -21,7 +21,7 @@ AHEAD = ("criticality.ttc", "criticality.thw", "criticality.drac", "criticality.
 
 def ends(scene: Drive) -> list[tuple[str, bool, float, float]]:
     """Return (object, lost, time, time from which or until which it is out of sight), in seconds."""
-    found = rows(derived(scene, tables=["track_end"]), "FROM track_end ORDER BY object_id, t_ns, lost")
+    found = rows(derived(scene, tables=["_track_end"]), "FROM _track_end ORDER BY object_id, t_ns, lost")
     return [(r["object_id"], r["lost"], r["t_ns"] / 1e9, r["plain_ns"] / 1e9) for r in found]
 
 
@@ -83,8 +83,8 @@ def seen_ahead(bend: float, *, box: bool) -> dict[int, dict[str, Any]]:
     # in the lane on the right: inside of a bend to the right
     lorry = standing("lorry", way, t, 62, -1.5 * LANE, length=12.0, width=2.5)
     scene = drive([ego, gone, *([lorry] if box else [])], way.environment, in_sight=True, sensor_range_m=100.0)
-    con = derived(scene, tables=["sight", "hidden"])
-    return {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM sight ORDER BY t_ns")}
+    con = derived(scene, tables=["_sight", "hidden"])
+    return {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM _sight ORDER BY t_ns")}
 
 
 def test_a_straight_lane_is_seen_past_who_is_beside_it() -> None:
@@ -104,7 +104,7 @@ def test_a_box_that_hardly_reaches_into_the_lane_hides_no_vehicle_in_it(into_m: 
     gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).lost(t > 1.05)
     lorry = standing("lorry", way, t, 62, -LANE - 1.25 + into_m, length=12.0, width=2.5)
     scene = drive([ego, gone, lorry], way.environment, in_sight=True, sensor_range_m=100.0)
-    row = rows(derived(scene, tables=["sight"]), "FROM sight ORDER BY t_ns DESC")[0]
+    row = rows(derived(scene, tables=["_sight"]), "FROM _sight ORDER BY t_ns DESC")[0]
     assert row["lane_m"] == pytest.approx(62 - 6 - 13 - 2.4)
     assert row["vehicle_lane_m"] == pytest.approx(row["lane_m"] if hides else 100 - 6 - 2.4, abs=2.1)
 

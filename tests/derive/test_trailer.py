@@ -26,8 +26,8 @@ BEND = ((150.0, 0.0), (60.0, 1 / 40), (300.0, 0.0))
 
 
 def parts(scene: Drive) -> dict[str, str]:
-    con = derived(scene, tables=["ego_part"])
-    return {row["object_id"]: row["part"] for row in rows(con, "FROM ego_part")}
+    con = derived(scene, tables=["_ego_part"])
+    return {row["object_id"]: row["part"] for row in rows(con, "FROM _ego_part")}
 
 
 def there(con: duckdb.DuckDBPyConnection) -> set[str]:

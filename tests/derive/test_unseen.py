@@ -41,12 +41,12 @@ def test_just_after_it_was_lost_a_lead_far_away_is_still_far() -> None:
     t = times(10.0)
     ego = moving("ego", way, t, 100 + 31 * t, way.own)
     lead = moving("x", way, t, 203.8 + 31 * t, way.own).keep(t < 5.05)
-    con = derived(drive([ego, lead], way.environment), tables=["hidden", "unseen", "unplaced"])
+    con = derived(drive([ego, lead], way.environment), tables=["hidden", "_unseen", "unplaced"])
     hidden = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM hidden")}
     assert hidden[55]["least_m"] == pytest.approx(99.0 - 5 * 0.25, abs=1e-3)
     assert hidden[55]["ahead"] is True
     # it goes the ego's way, too far away to be anything but a lead
-    assert {(r["code"], r["near"]) for r in rows(con, "FROM unseen")} == {("lost", False)}
+    assert {(r["code"], r["near"]) for r in rows(con, "FROM _unseen")} == {("lost", False)}
     assert not rows(con, "FROM unplaced")
 
 
@@ -148,12 +148,12 @@ def test_who_comes_in_on_another_road_was_on_no_lane_of_the_ego() -> None:
     south = ways["south"]
     end = sum(length for length, _ in south.pieces)
     other = moving("x", south, t, end - 2.6 - 8 * (t - 5.0), south.other).keep(t > 4.99)
-    con = derived(drive([ego, other], ways["straight"].environment), tables=["hidden", "unseen", "ego_state"])
-    unseen = rows(con, "FROM unseen WHERE off_ahead_m IS NOT NULL ORDER BY t_ns")
+    con = derived(drive([ego, other], ways["straight"].environment), tables=["hidden", "_unseen", "ego_state"])
+    unseen = rows(con, "FROM _unseen WHERE off_ahead_m IS NOT NULL ORDER BY t_ns")
     assert len(unseen) == 50
     assert {row["ahead_m"] for row in unseen} == {None}
     assert unseen[0]["off_behind_m"] == pytest.approx(60 - 2.4, abs=0.5)
-    hidden = rows(con, "FROM hidden h JOIN unseen u USING (drive_id, ego_id, t_ns, object_id)")
+    hidden = rows(con, "FROM hidden h JOIN _unseen u USING (drive_id, ego_id, t_ns, object_id)")
     assert all(row["lane_m"] > row["off_ahead_m"] - 6 for row in hidden)
 
 

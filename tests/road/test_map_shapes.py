@@ -43,7 +43,7 @@ def loaded(path: Path) -> duckdb.DuckDBPyConnection:
     environment = load_map(read_source(path))
     for table, rows in environment.tables.items():
         store.insert(con, table, rows)
-    derive(con, ["lane_cell", "junction_area", "road_surface"], are_map_tables=True)
+    derive(con, ["_lane_cell", "junction_area", "road_surface"], are_map_tables=True)
     con.execute(
         "INSERT INTO data_log BY NAME SELECT 'd' AS drive_id, 'd' AS file_name, '' AS sha256, '' AS format, ? AS environment_id, "
         "0 AS t_start_ns, 0 AS t_end_ns, 0 AS n_states, false AS has_indicator, false AS has_brake_light, "

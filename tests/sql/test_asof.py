@@ -46,7 +46,7 @@ UNIQUE_FOR_A_REASON = {
     "lane_crossing BY drive_id, ego_id, t_ns": "ego_state has one row, with one chain, for each step",
     "lost_time BY drive_id, t_from_ns": "it is grouped by them",
     "placed_step BY drive_id, ego_id, object_id, t_ns": "pair has one row for each ego, object and step",
-    "signal_phase BY drive_id, signal_id, t_from_ns": "see the last test",
+    "_signal_phase BY drive_id, signal_id, t_from_ns": "see the last test",
 }
 """Joins whose right side the drives of this test leave empty, or with one row -> why no two rows are equal."""
 
@@ -134,6 +134,6 @@ def test_a_light_has_one_phase_at_a_time_where_its_gap_is_just_too_long() -> Non
     with store.connect(threads=1) as con:
         store.insert(con, "signal_state", rows)
         found = con.execute(
-            f"SELECT t_from_ns, state FROM ({derivations()['signal_phase'].sql}) ORDER BY ALL"
+            f"SELECT t_from_ns, state FROM ({derivations()['_signal_phase'].sql}) ORDER BY ALL"
         ).fetchall()
     assert found == [(0, "red"), (651, "green"), (902, None)]

@@ -27,7 +27,7 @@ def test_a_suggestion_is_a_table_of_the_result(name: str, suggested: str | None)
     ("name", "place"),
     [
         ("actor_state", "actor_state is in the log: drivelint convert LOG --to parquet writes it"),
-        ("corridor", "corridor is kept only by drivelint check --keep-db."),
+        ("chain", "chain is kept only by drivelint check --keep-db."),
         ("nothing_of_ours", None),
     ],
 )

@@ -121,7 +121,7 @@ GOOD = [
     # a recursive CTE whose second part has more words than its first
     "WITH RECURSIVE r AS (SELECT 'a' AS s UNION ALL SELECT CASE WHEN s = 'b' THEN 'c' ELSE 'b' END FROM r) SELECT s = 'c' FROM r",
     "SELECT NULL::VARCHAR = 'anything', NULL IN ('a')",
-    "SELECT code = 'no_class' FROM (SELECT code FROM unplaced UNION ALL SELECT 'no_class' FROM oncoming_vehicle)",
+    "SELECT code = 'no_class' FROM (SELECT code FROM unplaced UNION ALL SELECT 'no_class' FROM _oncoming_vehicle)",
     "SELECT columns_of_a_table_that_nobody_knows = 'x', t.actor_class = 'cyclist' FROM elsewhere t",
     "SELECT e.x = 'y' FROM (SELECT * FROM elsewhere) e",
     "SELECT COLUMNS('a.*') = 'cyclist' FROM elsewhere",

@@ -24,13 +24,13 @@ CREATE TABLE conflict (
 
 INSERT INTO conflict BY NAME
 WITH
-drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
+drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id),
 -- u is the actor with the lesser id, v is the other one. The moments of u are divided into stretches without a pause; within each stretch
 -- of u, the moments of v are divided in the same way.
 pair_moment AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, actor_id, ego_id < object_id AS ego_is_u, CASE WHEN ego_is_u THEN t_ego_ns ELSE t_object_ns END AS u_ns, CASE WHEN ego_is_u THEN t_object_ns ELSE t_ego_ns END AS v_ns
-    FROM common_ground
+    FROM _common_ground
 ),
 lesser_id_moment AS MATERIALIZED (
     SELECT p.*, sum((u_ns - before_ns > g.max_gap_ns)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_ns) AS u_stretch
@@ -110,12 +110,12 @@ entry_or_exit AS MATERIALIZED (
         FROM box_time o JOIN encounter_time w USING (drive_id, ego_id, object_id, n)
     ) p
     JOIN drive_clock g USING (drive_id)
-    JOIN swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
+    JOIN _swept_box i ON i.drive_id = p.drive_id AND i.actor_id = p.actor_id AND i.t_ns = p.t_ns
 ),
 entry_or_exit_with_boxes AS MATERIALIZED (
     SELECT e.*, f
     FROM entry_or_exit e
-    LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
+    LEFT JOIN _swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
 -- share: the part of the path, from the moment off the ground to the moment on it, after which the box first touches a box of the other
 -- actor. angle_rad: the other's direction of travel minus this actor's own, where the two are nearest.
@@ -131,7 +131,7 @@ first_contact AS MATERIALIZED (
             boxes_sides(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m) AS sides_on,
             boxes_meet(b.x_m - i.x_m, b.y_m - i.y_m, i.cos_yaw, i.sin_yaw, b.cos_yaw, b.sin_yaw, i.half_length_m, i.half_width_m, b.half_length_m, b.half_width_m) AS is_meeting
         FROM entry_or_exit_with_boxes e
-        JOIN swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
+        JOIN _swept_box b ON b.drive_id = e.drive_id AND b.actor_id = e.on_id AND b.t_ns >= e.t_from_ns AND b.t_ns <= e.t_to_ns
     )
     GROUP BY drive_id, ego_id, object_id, n, is_ego, actor_id, sense, t_sample_ns, t_on_ns, t_off_ns
 ),

@@ -26,7 +26,7 @@ WITH crossing_step AS (
         *, running AND front_m >= 0 AND ((rear_m < 0 AND NOT joined) OR front_before_m < 0) AS enters_forwards,
         -- The ego reverses onto the crossing over its far edge.
         coalesce(running AND joined AND rear_m < 0 AND rear_before_m >= 0 AND front_m >= 0 AND front_before_m >= 0, false) AS enters_backwards
-    FROM near_mark
+    FROM _near_mark
     WHERE kind = 'crossing'
 ),
 passage_step AS (
@@ -101,7 +101,7 @@ passage_occupancy AS (
         min({'t_ns': o.t_from_ns, 'id': o.object_id}) FILTER (a.actor_class = 'pedestrian') AS first_occupant, bool_or(a.actor_class IS DISTINCT FROM 'pedestrian') AS has_unclassed
     FROM passage_context v
     JOIN driven_half h USING (drive_id, ego_id, mark_id, t_ns)
-    JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = h.along_road AND o.object_id <> v.ego_id
+    JOIN _crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = h.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_watch_to_ns AND o.t_to_ns >= coalesce(v.t_in_ns, v.t_ns)
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
@@ -115,10 +115,10 @@ other_half_occupant AS (
         coalesce(x.is_reached, false) AS is_reached
     FROM passage_context v
     LEFT JOIN other_half x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.mark_id = v.mark_id AND x.t_ns = v.t_ns
-    JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
+    JOIN _crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.along_road = -v.along_road AND o.object_id <> v.ego_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_in_ns
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
-    LEFT JOIN crossing_occupancy q ON q.drive_id = o.drive_id AND q.crossing_id = o.crossing_id AND q.object_id = o.object_id AND q.along_road = v.along_road
+    LEFT JOIN _crossing_occupancy q ON q.drive_id = o.drive_id AND q.crossing_id = o.crossing_id AND q.object_id = o.object_id AND q.along_road = v.along_road
     GROUP BY ALL
 ),
 coming_occupant AS (
@@ -152,7 +152,7 @@ person_sample AS (
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id <> v.ego_id AND s.t_ns >= v.t_watch_from_ns AND s.t_ns <= v.t_in_ns
     JOIN crossing_end k ON k.environment_id = v.environment_id AND k.crossing_id = v.mark_id AND k.along_road = v.along_road
     -- A person on the crossing is no longer waiting.
-    ANTI JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.object_id = s.actor_id
+    ANTI JOIN _crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.object_id = s.actor_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_watch_from_ns
     WHERE may_walk(s.actor_class)
     GROUP BY ALL

@@ -73,7 +73,7 @@ entry_time AS (
     SELECT i.drive_id, i.ego_id, i.t_first_ns, max(n.t_ns) AS t_in_ns
     FROM passage i
     JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)
-    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.entry_mark.chain_id AND n.kind = 'junction'
+    JOIN _near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.entry_mark.chain_id AND n.kind = 'junction'
         AND n.mark_id = i.junction_id AND n.s_start_m = w.entry_mark.s_m AND n.seg = i.seg AND n.t_ns <= i.t_first_ns
     WHERE n.front_m >= 0 AND n.front_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
@@ -82,7 +82,7 @@ exit_time AS (
     SELECT i.drive_id, i.ego_id, i.t_first_ns, min(n.t_ns) AS t_out_ns
     FROM passage i
     JOIN passage_chain w USING (drive_id, ego_id, t_first_ns)
-    JOIN near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.exit_mark.chain_id AND n.kind = 'junction'
+    JOIN _near_mark n ON n.drive_id = i.drive_id AND n.ego_id = i.ego_id AND n.chain_id = w.exit_mark.chain_id AND n.kind = 'junction'
         AND n.mark_id = i.junction_id AND n.s_start_m = w.exit_mark.s_m AND n.seg = i.seg AND n.t_ns >= i.t_last_ns
     WHERE n.rear_m >= 0 AND n.rear_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
@@ -128,7 +128,7 @@ branch_count AS (
         JOIN lanelet o ON o.environment_id = j.environment_id AND o.lanelet_id = l.from_id
         WHERE j.junction_id IS NOT NULL AND j.drivable AND o.drivable AND o.junction_id IS DISTINCT FROM j.junction_id
     ) r
-    LEFT JOIN road_half h USING (environment_id, road_id)
+    LEFT JOIN _road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
 -- A map that has only lights may lack the signs: a junction without a light may have a sign.

@@ -24,7 +24,7 @@ WITH signal_head AS (
         -- the same state.
         CASE WHEN m.light.fit IN ('own', 'maybe') OR bool_or(m.light.fit = 'maybe') OVER w OR NOT bool_or(m.light.fit = 'own') OVER w THEN 1 ELSE 2 END AS tier
     FROM (SELECT * EXCLUDE (lights), unnest(lights) AS light FROM way_mark) m
-    LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM signal_phase) r ON r.drive_id = m.drive_id AND r.signal_id = m.light.signal_id
+    LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM _signal_phase) r ON r.drive_id = m.drive_id AND r.signal_id = m.light.signal_id
     WHERE m.light.fit <> 'other'
     WINDOW w AS (PARTITION BY m.drive_id, m.ego_id, m.chain_id, m.kind, m.mark_id, m.s_start_m)
 ),
@@ -38,7 +38,7 @@ used_head AS (
 phase_start AS (
     SELECT DISTINCT h.drive_id, h.ego_id, h.chain_id, h.kind, h.mark_id, h.s_start_m, p.t_from_ns AS t_ns
     FROM used_head h
-    JOIN signal_phase p USING (drive_id, signal_id)
+    JOIN _signal_phase p USING (drive_id, signal_id)
 ),
 state_by_priority AS (
     SELECT
@@ -46,7 +46,7 @@ state_by_priority AS (
         CASE WHEN count(p.state) = count(*) AND min(p.state) = max(p.state) THEN min(p.state) END AS state
     FROM phase_start o
     JOIN used_head h USING (drive_id, ego_id, chain_id, kind, mark_id, s_start_m)
-    ASOF LEFT JOIN signal_phase p ON p.drive_id = h.drive_id AND p.signal_id = h.signal_id AND p.t_from_ns <= o.t_ns
+    ASOF LEFT JOIN _signal_phase p ON p.drive_id = h.drive_id AND p.signal_id = h.signal_id AND p.t_from_ns <= o.t_ns
     GROUP BY o.drive_id, o.ego_id, o.chain_id, o.kind, o.mark_id, o.s_start_m, o.t_ns, h.tier
 ),
 shown_state AS (

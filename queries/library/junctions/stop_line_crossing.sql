@@ -22,7 +22,7 @@ CREATE TABLE stop_line_crossing (
 );
 
 INSERT INTO stop_line_crossing BY NAME
-WITH stop_line_step AS (SELECT * FROM near_mark WHERE kind = 'stop_line'),
+WITH stop_line_step AS (SELECT * FROM _near_mark WHERE kind = 'stop_line'),
 numbered_step AS (
     SELECT
         *, front_m >= 0 AND front_before_m < 0 AND running AS is_crossing,

@@ -123,7 +123,7 @@ LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = C
 UNION ALL
 -- Without a map, the ego's own path is its lane: each piece of it is a chain of one lanelet.
 SELECT w.drive_id, w.ego_id, w.seg, 0, own_lanelet(w.seg), sum(w.len_m ORDER BY w.k), min(w.t_from_ns), min(s.t_last_ns), 0.0
-FROM own_way w
+FROM _own_way w
 JOIN (SELECT drive_id, ego_id, seg, max(t_ns) AS t_last_ns FROM step GROUP BY ALL) s USING (drive_id, ego_id, seg)
 SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = w.drive_id
 GROUP BY w.drive_id, w.ego_id, w.seg

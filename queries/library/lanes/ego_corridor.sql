@@ -16,9 +16,9 @@ CREATE TABLE ego_corridor (
     rear_s_m DOUBLE,                  -- chain station of the rearmost corner {position, heading, size}
     lat_half_m DOUBLE,                -- half the extent of the box across the corridor {heading, size}
     half_width_m DOUBLE NOT NULL,     -- half width of the running lane at the centre's station
-    over_width_m DOUBLE,              -- see corridor
-    over_against BOOLEAN,             -- see corridor {position, heading, size}
-    side INTEGER,                     -- see corridor {position}
+    over_width_m DOUBLE,              -- see _corridor
+    over_against BOOLEAN,             -- see _corridor {position, heading, size}
+    side INTEGER,                     -- see _corridor {position}
     heading_diff_rad DOUBLE           -- the ego's heading relative to the corridor, -pi..pi {heading}
 );
 
@@ -45,7 +45,7 @@ point_candidate AS (
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM (FROM box_point SEMI JOIN (FROM data_log WHERE environment_id IS NOT NULL) USING (drive_id)) a
-    JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
+    JOIN _corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
 ),
 point_on_strip AS (
     SELECT
@@ -64,10 +64,10 @@ occurrence AS (
     SELECT
         drive_id, ego_id, chain_id, lanelet_id, s_start_m, over_width_m, over_against, side,
         coalesce((lag(s_start_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id ORDER BY s_start_m) + s_start_m) / 2, '-infinity'::DOUBLE) AS from_m
-    FROM corridor
+    FROM _corridor
 ),
 chain_lanelet AS (
-    SELECT DISTINCT drive_id, ego_id, chain_id, lanelet_id FROM corridor
+    SELECT DISTINCT drive_id, ego_id, chain_id, lanelet_id FROM _corridor
 ),
 -- The stations of the ego that are certain: those at which its lanelet is part of the chain.
 certain_station AS (
@@ -135,7 +135,7 @@ own_place AS (
         b.half_box_length_m, b.half_box_width_m, wrap_rad(b.yaw_rad - atan2(w.ty0 + w.ty1, w.tx0 + w.tx1)) AS turn_rad
     FROM ego_box b
     JOIN step st USING (drive_id, ego_id, t_ns)
-    ASOF JOIN (SELECT * FROM own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id) WHERE t_from_ns IS NOT NULL) w
+    ASOF JOIN (SELECT * FROM _own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id) WHERE t_from_ns IS NOT NULL) w
         ON w.drive_id = st.drive_id AND w.ego_id = st.ego_id AND w.seg = st.seg AND w.t_from_ns <= st.t_ns
     CROSS JOIN LATERAL (SELECT along0(b.x_m, b.y_m, w.x0_m, w.y0_m, w.tx0, w.ty0) AS a0, along1(b.x_m, b.y_m, w.x1_m, w.y1_m, w.tx1, w.ty1) AS a1) a
 )

@@ -12,7 +12,7 @@ INSERT INTO ego_footway BY NAME
 WITH ego_box AS (
     SELECT st.drive_id, st.ego_id, st.t_ns, o.actor_id, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS half_box_length_m, s.width_m / 2 AS half_box_width_m, g.environment_id
     FROM step st
-    JOIN ego_actor o USING (drive_id, ego_id)
+    JOIN _ego_actor o USING (drive_id, ego_id)
     LEFT JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = o.actor_id AND s.t_ns = st.t_ns
     JOIN data_log g ON g.drive_id = st.drive_id
 ),
@@ -30,7 +30,7 @@ point_candidate AS (
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM outline_point a
-    JOIN lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
+    JOIN _lane_cell c ON c.environment_id = a.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
 ),
 point_depth AS (
     SELECT

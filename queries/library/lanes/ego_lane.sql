@@ -43,8 +43,8 @@ scored_candidate AS (
         count(*) OVER (PARTITION BY c.drive_id, c.ego_id, s.before_k, c.lanelet_id) AS n_covered
     FROM lanelet_candidate c
     JOIN certain_lanelet s USING (drive_id, ego_id, k)
-    LEFT JOIN lane_near b ON b.environment_id = c.environment_id AND b.from_id = s.before_id AND b.to_id = c.lanelet_id
-    LEFT JOIN lane_near a ON a.environment_id = c.environment_id AND a.from_id = c.lanelet_id AND a.to_id = s.after_id
+    LEFT JOIN _lane_near b ON b.environment_id = c.environment_id AND b.from_id = s.before_id AND b.to_id = c.lanelet_id
+    LEFT JOIN _lane_near a ON a.environment_id = c.environment_id AND a.from_id = c.lanelet_id AND a.to_id = s.after_id
     WHERE c.n_candidates > 1
 ),
 best_candidate AS (

@@ -39,7 +39,7 @@ WITH
 -- not known.
 trailer_reach AS (
     SELECT p.drive_id, p.ego_id, e.t_ns, max(sqrt((s.x_m - e.x_m) ** 2 + (s.y_m - e.y_m) ** 2) + s.length_m / 2) AS reach_m
-    FROM ego_part p
+    FROM _ego_part p
     JOIN state_dynamics e ON e.drive_id = p.drive_id AND e.actor_id = p.ego_id
     LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = e.t_ns
     WHERE p.part = 'trailer'

@@ -18,13 +18,13 @@ WITH exit_step AS (
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN data_log g ON g.drive_id = e.drive_id
     JOIN ego_lane a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.t_ns = e.t_ns
-    JOIN exit_lane x ON x.environment_id = g.environment_id AND (x.lanelet_id = a.lanelet_id)
+    JOIN _exit_lane x ON x.environment_id = g.environment_id AND (x.lanelet_id = a.lanelet_id)
     UNION ALL
     SELECT e.drive_id, e.ego_id, e.t_ns, x.side, false, x.lanelet_id, st.k, st.seg
     FROM ego_state e
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN data_log g ON g.drive_id = e.drive_id
-    JOIN exit_lane x ON x.environment_id = g.environment_id AND x.from_id = e.lanelet_id
+    JOIN _exit_lane x ON x.environment_id = g.environment_id AND x.from_id = e.lanelet_id
 ),
 -- Consecutive steps beside or on exit lanelets of one side are a run: the lanelets follow each other and belong to the same exit. A hole
 -- ends the run, because it is not known whether the ego took the exit in the hole.

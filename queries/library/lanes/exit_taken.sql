@@ -27,10 +27,10 @@ WITH boundary_crossing AS (
 exit_entry AS (
     SELECT c.*, CASE c.side WHEN 1 THEN 'left' ELSE 'right' END AS side_name
     FROM boundary_crossing c
-    JOIN exit_lane l ON l.environment_id = c.environment_id AND l.lanelet_id = c.to_id
+    JOIN _exit_lane l ON l.environment_id = c.environment_id AND l.lanelet_id = c.to_id
     JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t0_ns
     -- An ego that is already on an exit lane does not cross into one.
-    ANTI JOIN exit_lane f ON f.environment_id = c.environment_id AND f.lanelet_id = e.lanelet_id
+    ANTI JOIN _exit_lane f ON f.environment_id = c.environment_id AND f.lanelet_id = e.lanelet_id
 ),
 last_sign AS (
     SELECT t.drive_id, t.ego_id, t.t0_ns, max({'s_m': c.s_start_m + s.lane_s_m, 'id': s.signal_id, 'chain_id': c.chain_id}) AS last

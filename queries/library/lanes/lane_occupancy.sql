@@ -22,7 +22,7 @@ WITH lane_candidate AS (
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM state_dynamics a
     JOIN data_log l USING (drive_id)
-    JOIN lane_cell c ON c.environment_id = l.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
+    JOIN _lane_cell c ON c.environment_id = l.environment_id AND c.cell = lane_cell_of(a.x_m, a.y_m)
 ),
 lane_place AS (
     SELECT *, a0 / (a0 + a1) AS u, offset_left(x_m, y_m, a0 / (a0 + a1), x0_m, y0_m, tx0, ty0, x1_m, y1_m, tx1, ty1) AS d_m
@@ -40,7 +40,7 @@ lane_match AS (
 lane_height AS (
     SELECT p.environment_id, p.lanelet_id, p.s_m, p.z_m, lead(p.s_m) OVER w AS s_next_m, lead(p.z_m) OVER w AS z_next_m
     FROM lane_point p
-    SEMI JOIN lane_apart a ON a.environment_id = p.environment_id AND a.lanelet_id = p.lanelet_id
+    SEMI JOIN _lane_apart a ON a.environment_id = p.environment_id AND a.lanelet_id = p.lanelet_id
     WINDOW w AS (PARTITION BY p.environment_id, p.lanelet_id ORDER BY p.k)
 ),
 match_height AS (
@@ -56,7 +56,7 @@ match_height AS (
 match_off_level AS (
     SELECT DISTINCT m.drive_id, m.actor_id, m.t_ns, m.lanelet_id
     FROM (FROM match_height WHERE NOT is_same) m
-    JOIN lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
+    JOIN _lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
     JOIN (FROM match_height WHERE is_same) o ON o.drive_id = m.drive_id AND o.actor_id = m.actor_id AND o.t_ns = m.t_ns AND o.lanelet_id = a.other_id
 )
 -- Lanes over each other are rare. Without such lanes, all matches are returned directly: the anti join below would hash all of them.

@@ -136,7 +136,7 @@ possible_pass AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
     FROM hidden h
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
-    LEFT JOIN sight v USING (drive_id, ego_id, t_ns)
+    LEFT JOIN _sight v USING (drive_id, ego_id, t_ns)
     LEFT JOIN lost_passable_object s ON s.drive_id = h.drive_id AND s.ego_id = h.ego_id AND s.object_id = h.object_id
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
         AND NOT (

@@ -49,7 +49,7 @@ map_content AS (
         EXISTS (FROM stop_line t WHERE t.environment_id = e.environment_id) AS has_stop_lines,
         EXISTS (FROM crossing t WHERE t.environment_id = e.environment_id) AS has_crossings,
         EXISTS (FROM traffic_signal t WHERE t.environment_id = e.environment_id AND t.kind = 'exit') AS has_exit_signs,
-        EXISTS (FROM exit_lane x WHERE x.environment_id = e.environment_id) AS has_exits
+        EXISTS (FROM _exit_lane x WHERE x.environment_id = e.environment_id) AS has_exits
     FROM environment e
 ),
 -- Per signal: whether the map must have it, whether it is available, and the reason to state if it is available and if it is missing.

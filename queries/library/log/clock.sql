@@ -10,4 +10,4 @@ CREATE TABLE clock (
 );
 
 INSERT INTO clock BY NAME
-SELECT c.* FROM ego_clock c ANTI JOIN deferred_ego USING (drive_id, ego_id)
+SELECT c.* FROM _ego_clock c ANTI JOIN deferred_ego USING (drive_id, ego_id)

@@ -11,7 +11,7 @@ CREATE TABLE ego_condition (
     nation VARCHAR,                   -- [nation] NULL: not given
     weather VARCHAR,                  -- [weather] NULL: not given
     light VARCHAR,                    -- [light] NULL: not given
-    vehicle_class VARCHAR,            -- [vehicle_class] of the ego: as given, or by its actor class; car_towing for a car that tows a trailer (see ego_part); NULL: not known, or another vehicle that tows a trailer
+    vehicle_class VARCHAR,            -- [vehicle_class] of the ego: as given, or by its actor class; car_towing for a car that tows a trailer (see _ego_part); NULL: not known, or another vehicle that tows a trailer
     limit_mps DOUBLE,                 -- the map's speed limit at the ego's position; NULL: the map does not state it
     engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true without either; NULL: the log has flags, but none is known at this step
 );
@@ -60,7 +60,7 @@ ego_with_engaged_mode AS (
     SELECT DISTINCT drive_id, ego_id FROM ego_mode WHERE mode = 'engaged'
 ),
 towing_ego AS (
-    SELECT DISTINCT drive_id, ego_id FROM ego_part WHERE part = 'trailer'
+    SELECT DISTINCT drive_id, ego_id FROM _ego_part WHERE part = 'trailer'
 )
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.road_type,

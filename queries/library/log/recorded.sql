@@ -14,7 +14,7 @@ WITH
             a.drive_id, a.actor_id, a.t_ns, c.max_gap_ns, l.lost,
             lag(a.t_ns) OVER (PARTITION BY a.drive_id, a.actor_id ORDER BY a.t_ns) AS t_before_ns
         FROM actor_state a
-        JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c ON c.drive_id = a.drive_id
+        JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id) c ON c.drive_id = a.drive_id
         LEFT JOIN (SELECT drive_id, list({'t_from_ns': t_from_ns, 't_to_ns': t_to_ns}) AS lost FROM lost_time GROUP BY drive_id) l
             ON l.drive_id = a.drive_id
         ANTI JOIN recorded r ON r.drive_id = a.drive_id

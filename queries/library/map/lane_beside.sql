@@ -58,7 +58,7 @@ named_neighbour AS (
 ),
 boundary_piece AS (
     SELECT g.*, s.side, z.z_m, ceil(len_m / 10) AS n, unnest(range(ceil(len_m / 10)::BIGINT)) AS i
-    FROM lane_segment g
+    FROM _lane_segment g
     JOIN side s USING (environment_id, lanelet_id)
     JOIN lane_point z USING (environment_id, lanelet_id, k)
     JOIN lanelet j ON j.environment_id = s.environment_id AND j.lanelet_id = s.lanelet_id AND j.junction_id IS NULL
@@ -88,7 +88,7 @@ probe_hit AS (
         along0(p.x_m, p.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0, along1(p.x_m, p.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1,
         c.x0_m, c.y0_m, c.x1_m, c.y1_m, c.slack0_m, c.slack1_m
     FROM probe_point p
-    JOIN lane_cell c ON c.environment_id = p.environment_id AND c.cell = lane_cell_of(p.x_m, p.y_m) AND c.drivable AND c.lanelet_id <> p.lanelet_id
+    JOIN _lane_cell c ON c.environment_id = p.environment_id AND c.cell = lane_cell_of(p.x_m, p.y_m) AND c.drivable AND c.lanelet_id <> p.lanelet_id
     JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id AND n.junction_id IS NULL
     JOIN lane_point z ON z.environment_id = c.environment_id AND z.lanelet_id = c.lanelet_id AND z.k = c.k
     -- A lane on a bridge above it is not beside it.

@@ -55,7 +55,7 @@ slowing_sample AS MATERIALIZED (
             w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns),
             half_second AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW)
     )
-    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) USING (drive_id)
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id) USING (drive_id)
     WHERE t_ns - earlier.t_ns BETWEEN 400_000_000 AND greatest(max_gap_ns, 500_000_000)
         AND (earlier.speed_mps - speed_mps) / ((t_ns - earlier.t_ns) / 1e9) > gentle_mps2()
 ),
@@ -141,7 +141,7 @@ grid_scale AS (
     JOIN (
         SELECT s.drive_id, max(swept_half_m(s.length_m, s.speed_mps, k.period_s)) + max(s.width_m) / 2 + hardly_room_m() AS reach_m
         FROM state_dynamics s
-        JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
+        JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM _ego_clock GROUP BY drive_id) k USING (drive_id)
         SEMI JOIN braking b ON b.drive_id = s.drive_id
         GROUP BY s.drive_id
     ) g USING (drive_id)
@@ -163,7 +163,7 @@ box AS NOT MATERIALIZED (
         swept_half_m(s.length_m, s.speed_mps, k.period_s) AS half_length_m, s.width_m / 2 AS half_width_m, cos(s.yaw_rad) AS c, sin(s.yaw_rad) AS s
     FROM state_dynamics s
     JOIN grid_scale g USING (drive_id)
-    JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
+    JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM _ego_clock GROUP BY drive_id) k USING (drive_id)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
 -- The boxes of the ego and of the trailer that it tows. An oncoming driver also brakes if the ego is out in the driver's lane and leaves
@@ -171,7 +171,7 @@ box AS NOT MATERIALIZED (
 ego_box AS NOT MATERIALIZED (
     SELECT o.ego_id, b.*, b.half_width_m + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS half_width_out_m
     FROM box b
-    JOIN ego_actor o USING (drive_id, actor_id)
+    JOIN _ego_actor o USING (drive_id, actor_id)
     SEMI JOIN step s ON s.drive_id = b.drive_id AND s.ego_id = o.ego_id AND s.t_ns = b.t_ns
     LEFT JOIN (FROM excursion WHERE overtaking AND over_against IS DISTINCT FROM false) x
         ON x.drive_id = b.drive_id AND x.ego_id = o.ego_id AND b.t_ns >= x.t0_ns AND b.t_ns <= coalesce(x.t_back_ns, x.t_end_ns)
@@ -241,7 +241,7 @@ other_obstacle AS (
     JOIN path_cell r ON r.drive_id = l.drive_id AND r.object_id = l.object_id AND r.t_from_ns = l.t_from_ns AND r.way_m <= r.reach_m
     JOIN (SELECT b.* FROM box b SEMI JOIN braking_for_ego l ON l.drive_id = b.drive_id AND b.t_ns >= l.t_from_ns AND b.t_ns <= l.t_from_ns + 2 * conflict_ns()) b
         ON b.drive_id = r.drive_id AND b.cell = r.cell AND b.slot = r.slot AND b.actor_id <> l.object_id
-    ANTI JOIN ego_actor o ON o.drive_id = l.drive_id AND o.ego_id = l.ego_id AND o.actor_id = b.actor_id
+    ANTI JOIN _ego_actor o ON o.drive_id = l.drive_id AND o.ego_id = l.ego_id AND o.actor_id = b.actor_id
     WHERE b.t_ns >= r.t_from_ns AND abs(b.t_ns - r.t_expected_ns) <= forced_apart_ns() / 2
         AND boxes_meet(r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.half_length_m, b.half_width_m, r.half_length_m, r.half_width_m)
         AND (b.t_ns <= r.t_expected_ns OR abs(wrap_rad(r.dir_rad - b.dir_rad)) > conflict_angle_rad())
@@ -269,7 +269,7 @@ signal_ahead AS (
     JOIN traffic_signal t ON t.environment_id = l.environment_id AND t.lanelet_id = l.lanelet_id AND t.kind IN ('traffic_light', 'stop', 'give_way')
     WHERE l.lane_start_m + t.lane_s_m BETWEEN 0 AND l.reach_m
         AND NOT EXISTS (
-            FROM signal_phase f
+            FROM _signal_phase f
             WHERE f.drive_id = l.drive_id AND f.signal_id = t.signal_id AND f.state = 'green'
                 AND f.t_from_ns <= l.t_from_ns AND coalesce(f.t_to_ns > l.t_to_ns, true)
         )

@@ -21,7 +21,7 @@ CREATE TABLE state_dynamics (
 );
 
 INSERT INTO state_dynamics BY NAME
-WITH drive_clock AS (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
+WITH drive_clock AS (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id),
 -- Drives with measured heights. A flat simulation writes the same height all the time: 0, or half the box's height.
 drive_with_heights AS (
     SELECT drive_id

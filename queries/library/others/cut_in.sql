@@ -81,7 +81,7 @@ free_lane AS (
     FROM (
         SELECT drive_id, ego_id, t_ns, lane_m AS m FROM hidden WHERE vehicle AND ahead IS DISTINCT FROM false AND NOT beside_lane
         UNION ALL
-        SELECT drive_id, ego_id, t_ns, gap_m FROM lane_ahead WHERE is_vehicle(actor_class) IS DISTINCT FROM true
+        SELECT drive_id, ego_id, t_ns, gap_m FROM _lane_ahead WHERE is_vehicle(actor_class) IS DISTINCT FROM true
     )
     GROUP BY ALL
 ),

@@ -31,7 +31,7 @@ ahead AS (
             'across_m': p.across_m, 'ego_across_mps': p.ego_across_mps, 'across_mps': p.across_mps
         }) FILTER (is_vehicle(p.actor_class)) AS nearest,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unclassified_m
-    FROM lane_ahead p
+    FROM _lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE p.outside IS DISTINCT FROM true
     GROUP BY ALL

@@ -18,7 +18,7 @@ CREATE TABLE oncoming (
 INSERT INTO oncoming BY NAME
 WITH corridor_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
-    FROM corridor c
+    FROM _corridor c
     GROUP BY ALL
 ),
 ego_step AS (
@@ -36,7 +36,7 @@ ego_step AS (
 ),
 nearest_vehicle AS (
     SELECT drive_id, ego_id, t_ns, min({'da_m': da_m, 'object_id': object_id, 'speed_mps': speed_mps, 'is_coming': on_its_way}) AS ov
-    FROM oncoming_vehicle
+    FROM _oncoming_vehicle
     WHERE vehicle
     GROUP BY ALL
 ),
@@ -49,7 +49,7 @@ doubtful_object AS (
     FROM (
         SELECT drive_id, ego_id, t_ns, object_id, code FROM unplaced
         UNION ALL
-        SELECT drive_id, ego_id, t_ns, object_id, 'no_class' FROM oncoming_vehicle WHERE vehicle IS NULL
+        SELECT drive_id, ego_id, t_ns, object_id, 'no_class' FROM _oncoming_vehicle WHERE vehicle IS NULL
     ) u
     ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns

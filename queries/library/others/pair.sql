@@ -27,8 +27,8 @@ CREATE TABLE pair (
     lat_half_m DOUBLE,                -- half the extent of the object's box across the corridor {heading, size}
     heading_diff_rad DOUBLE,          -- the object's heading relative to the corridor, -pi..pi {heading}
     half_width_m DOUBLE,              -- half width of the running lane at the object's station
-    over_width_m DOUBLE,              -- see corridor
-    over_against BOOLEAN              -- see corridor {position, heading, size}
+    over_width_m DOUBLE,              -- see _corridor
+    over_against BOOLEAN              -- see _corridor {position, heading, size}
 );
 
 INSERT INTO pair BY NAME
@@ -38,7 +38,7 @@ WITH sample_at_step AS (
         yaw_along_travel_rad(s.yaw_rad, s.travel_rad) AS yaw_rad, s.speed_mps, s.accel_mps2, s.length_m, s.width_m
     FROM step e
     JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns AND s.actor_id <> e.ego_id
-    ANTI JOIN ego_part g ON g.drive_id = e.drive_id AND g.ego_id = e.ego_id AND g.object_id = s.actor_id
+    ANTI JOIN _ego_part g ON g.drive_id = e.drive_id AND g.ego_id = e.ego_id AND g.object_id = s.actor_id
 ),
 track AS (
     SELECT c.drive_id, c.ego_id, s.object_id, s.t_first_ns, s.t_last_ns, s.n_samples
@@ -46,7 +46,7 @@ track AS (
     JOIN (
         SELECT drive_id, actor_id AS object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, count(*) AS n_samples FROM state_dynamics GROUP BY ALL
     ) s ON s.drive_id = c.drive_id AND s.object_id <> c.ego_id
-    ANTI JOIN ego_part g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.object_id = s.object_id
+    ANTI JOIN _ego_part g ON g.drive_id = c.drive_id AND g.ego_id = c.ego_id AND g.object_id = s.object_id
 ),
 track_at_steps AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns, max(k) - min(k) + 1 AS n_steps, count(*) AS n_samples
@@ -119,7 +119,7 @@ segment_candidate AS (
         along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0,
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM pair_offset a
-    JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
+    JOIN _corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
     -- The conditions repeat the expressions of a0 and a1, because DuckDB then filters before it computes the other columns.
     WHERE a.ego_s_m IS NOT NULL
         AND along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) >= -c.slack0_m AND along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) > -c.slack1_m
@@ -149,7 +149,7 @@ lap_end AS (
         END AS to_m
     FROM (
         SELECT *, lead(s_start_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id, is_oncoming ORDER BY s_start_m) AS next_start_m
-        FROM corridor CROSS JOIN (VALUES (false), (true)) AS v(is_oncoming)
+        FROM _corridor CROSS JOIN (VALUES (false), (true)) AS v(is_oncoming)
     )
 ),
 lap AS (
@@ -195,7 +195,7 @@ object_place AS (
     SELECT pair_no, p.s_m, p.d_m, p.half_width_m, p.lane_heading_diff_rad, p.over_width_m, p.over_against, p.lanelet_id FROM nearest_place
 ),
 -- ---- levels: objects whose box, in plan, covers the running lane or one lane's width beside it, if heights or the map give the level
-drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
+drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN _lane_apart l ON l.environment_id = g.environment_id),
 pair_over_road AS MATERIALIZED (
     SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, p.lane_heading_diff_rad, p.lanelet_id
     FROM (
@@ -257,7 +257,7 @@ pair_off_level AS (
     FROM pair_over_road v
     JOIN data_log g USING (drive_id)
     JOIN lane_occupancy o ON o.drive_id = v.drive_id AND o.actor_id = v.object_id AND o.t_ns = v.t_sample_ns
-    JOIN lane_apart l ON l.environment_id = g.environment_id AND l.lanelet_id = v.lanelet_id AND l.other_id = o.lanelet_id
+    JOIN _lane_apart l ON l.environment_id = g.environment_id AND l.lanelet_id = v.lanelet_id AND l.other_id = o.lanelet_id
     ANTI JOIN (FROM height_difference WHERE is_same) h ON h.pair_no = v.pair_no
     WHERE coalesce(NOT along_lane(v.lane_heading_diff_rad) OR along_lane(o.heading_diff_rad), true)
 ),
@@ -286,7 +286,7 @@ trailer_clearance AS (
             cos(a.yaw_rad - s.yaw_rad) AS c, sin(a.yaw_rad - s.yaw_rad) AS s,
             s.length_m / 2 AS trailer_half_length_m, s.width_m / 2 AS trailer_half_width_m, a.object_half_length_m, a.object_half_width_m
         FROM pair_offset a
-        JOIN (FROM ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
+        JOIN (FROM _ego_part WHERE part = 'trailer') g ON g.drive_id = a.drive_id AND g.ego_id = a.ego_id
         LEFT JOIN state_dynamics s ON s.drive_id = g.drive_id AND s.actor_id = g.object_id AND s.t_ns = a.t_ns
         CROSS JOIN LATERAL (
             SELECT sqrt((a.x_m - s.x_m) ** 2 + (a.y_m - s.y_m) ** 2) - sqrt((s.length_m / 2) ** 2 + (s.width_m / 2) ** 2) - sqrt(a.object_half_length_m ** 2 + a.object_half_width_m ** 2) AS least_m

@@ -43,7 +43,7 @@ lane_summary AS (
         coalesce(bool_or(p.oncoming IS DISTINCT FROM false) FILTER (is_vehicle(p.actor_class)), false) AS has_oncoming, min(p.gap_m) FILTER (is_vehicle(p.actor_class) AND p.across_m < 0) AS way_gap_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS NULL AND p.outside) AS outside_m,
         min(p.gap_m) FILTER (is_vehicle(p.actor_class) IS DISTINCT FROM true AND p.gap_m < unsure_reach_m(e.speed_mps)) AS unclassified_m
-    FROM lane_ahead p
+    FROM _lane_ahead p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     GROUP BY ALL
 ),
@@ -83,7 +83,7 @@ vehicle_or_doubt AS (
         greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
     FROM further_vehicle m
     JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
-    JOIN lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
+    JOIN _lane_ahead p ON p.drive_id = m.drive_id AND p.ego_id = m.ego_id AND p.t_ns = m.t_ns AND p.object_id = m.object_id
     JOIN half_second_begin h ON h.drive_id = m.drive_id AND h.ego_id = m.ego_id AND h.t_ns = m.t_ns
     LEFT JOIN pair b ON b.drive_id = m.drive_id AND b.ego_id = m.ego_id AND b.t_ns = h.t_half_second_ns AND b.object_id = m.object_id
     LEFT JOIN actor_with_filtered_velocity f ON f.drive_id = m.drive_id AND f.actor_id = m.object_id

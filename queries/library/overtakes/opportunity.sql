@@ -46,7 +46,7 @@ judged_step AS (
     JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
     CROSS JOIN (SELECT * FROM profile WHERE profile <> 'observed') p
     LEFT JOIN oncoming o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
-    LEFT JOIN oncoming_vehicle v ON v.drive_id = h.drive_id AND v.ego_id = h.ego_id AND v.t_ns = h.t_ns AND v.vehicle
+    LEFT JOIN _oncoming_vehicle v ON v.drive_id = h.drive_id AND v.ego_id = h.ego_id AND v.t_ns = h.t_ns AND v.vehicle
 ),
 -- Of several oncoming vehicles, the one that leaves the least distance counts, see overtake_sda.
 worst_ov AS (

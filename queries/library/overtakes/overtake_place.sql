@@ -40,7 +40,7 @@ road_count AS (
         JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id
         WHERE b.junction_id IS NOT NULL AND a.junction_id IS NULL
     ) r
-    LEFT JOIN road_half h USING (environment_id, road_id)
+    LEFT JOIN _road_half h USING (environment_id, road_id)
     GROUP BY ALL
 ),
 chain_lanelet AS (

@@ -13,7 +13,7 @@ CREATE TABLE overtake_sda (
     occurrence INTEGER NOT NULL,      -- see overtake
     profile VARCHAR NOT NULL,         -- [profile_name] see profile; selected or not
     t0_ns BIGINT NOT NULL,            -- see overtake {position}
-    ov_id VARCHAR,                    -- of the oncoming vehicles at t0 (see oncoming_vehicle), the one that leaves the least spare distance; NULL: none {position}
+    ov_id VARCHAR,                    -- of the oncoming vehicles at t0 (see _oncoming_vehicle), the one that leaves the least spare distance; NULL: none {position}
     da_m DOUBLE,                      -- distance ahead to the OV; NULL: unknown; or more than sda_m, while another OV cannot be excluded; or too little at the ego's speed at t0, but enough at its mean speed (or at the speed reached at the end of the log) {position}
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound: no OV is seen within this free distance {position}
     nobody BOOLEAN NOT NULL,          -- the positions of all vehicles are known, and there is no OV within da_m {position}
@@ -34,7 +34,7 @@ INSERT INTO overtake_sda BY NAME
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
-    JOIN oncoming_vehicle v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.t_ns = o.t0_ns AND v.vehicle
+    JOIN _oncoming_vehicle v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.t_ns = o.t0_ns AND v.vehicle
     UNION ALL
     SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
@@ -48,7 +48,7 @@ step_with_ov AS (
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     LEFT JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns AND p.object_id = v.ov_id
     -- A vehicle from another lane still has to drive round the corner. A vehicle that the ego has met is only in pair.
-    LEFT JOIN oncoming_vehicle n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.t_ns = e.t_ns AND n.object_id = v.ov_id
+    LEFT JOIN _oncoming_vehicle n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.t_ns = e.t_ns AND n.object_id = v.ov_id
 ),
 -- The distance by which the two have approached each other until both stand, the last step at which this is seen, and the last step at
 -- which the ego moves.

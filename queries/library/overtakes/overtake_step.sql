@@ -10,7 +10,7 @@ CREATE TABLE overtake_step (
     stage VARCHAR NOT NULL,           -- [overtake_stage] {position}
     vbp_id VARCHAR NOT NULL,          -- the vehicle being passed (VBP) {position}
     sure BOOLEAN NOT NULL,            -- see overtake {position}
-    ov_id VARCHAR,                    -- of the oncoming vehicles (OV) at this step, the one whose danger space reaches furthest into the ego's, see oncoming_vehicle; NULL: none {position}
+    ov_id VARCHAR,                    -- of the oncoming vehicles (OV) at this step, the one whose danger space reaches furthest into the ego's, see _oncoming_vehicle; NULL: none {position}
     ov_known BOOLEAN NOT NULL,        -- the positions of all vehicles are known: no other vehicle may be oncoming {position}
     ov_reason VARCHAR,                -- why ov_known is false, and what to provide, as JSON from the macro why; filled also where ov_known is true
     sd_av_m DOUBLE,                   -- stopping distance of the ego (AV): the length of its danger space {position, heading, velocity, size}
@@ -44,7 +44,7 @@ WITH stage AS (
         danger_space_m(e.speed_mps) AS sd_av_m, e.limit_mps, ego_lacks(e.x_m, e.yaw_rad, e.lanelet_id, e.front_s_m) AS ego_lack
     FROM overtake o
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
-    LEFT JOIN (SELECT DISTINCT drive_id, ego_id FROM ego_part WHERE part = 'trailer') d ON d.drive_id = o.drive_id AND d.ego_id = o.ego_id
+    LEFT JOIN (SELECT DISTINCT drive_id, ego_id FROM _ego_part WHERE part = 'trailer') d ON d.drive_id = o.drive_id AND d.ego_id = o.ego_id
     WHERE o.opposing IS DISTINCT FROM false
 ),
 -- The first join is by time alone, which is a number: the keys are texts, and most of the drive is outside overtakes.
@@ -73,7 +73,7 @@ ov_overlap AS (
             depth_if_apart(s.sd_av_m + danger_space_m(v.speed_mps) - v.da_m)
         ) AS overlap_m
     FROM stage s
-    JOIN oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle AND v.object_id <> s.vbp_id
+    JOIN _oncoming_vehicle v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND v.t_ns = s.t_ns AND v.vehicle AND v.object_id <> s.vbp_id
     LEFT JOIN pair_in_overtake o ON o.drive_id = s.drive_id AND o.ego_id = s.ego_id AND o.t_ns = s.t_ns AND o.object_id = v.object_id
 ),
 worst_ov AS (

@@ -16,7 +16,7 @@ CREATE TABLE hidden (
     least_m DOUBLE NOT NULL,          -- lower bound of the distance from box to box, from the time and place of the last and next sighting that are not in doubt; if late, also from the part that is in plain view {position, heading, size}
     ahead BOOLEAN,                    -- the actor is ahead of the ego; NULL: it may be ahead or not {position}
     along BOOLEAN NOT NULL,           -- the actor moves in the ego's direction: by its last or next sighting on the corridor, not in doubt {position}
-    late BOOLEAN NOT NULL,            -- the actor is not in plain view, where it would have been recorded: see track_end {position}
+    late BOOLEAN NOT NULL,            -- the actor is not in plain view, where it would have been recorded: see _track_end {position}
     lane_m DOUBLE NOT NULL,           -- lower bound of the distance ahead, if the actor is in the ego's lane: least_m; if late, the part of the lane in plain view; if it is not on the map, the corridor's length {position}
     beside_lane BOOLEAN NOT NULL      -- the actor is not in the ego's lane: it is seen too far beside the lane, too short a time before or after, to be in it {position, heading, velocity}
 );
@@ -40,11 +40,11 @@ missing_step AS (
     ASOF LEFT JOIN object_sample s ON s.drive_id = n.drive_id AND s.actor_id = n.object_id AND s.t_ns <= n.t_ns
     UNION ALL
     SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, a.actor_class, true, u.ahead_m, u.behind_m, u.off_ahead_m, u.off_behind_m
-    FROM unseen u
+    FROM _unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
 ),
 corridor_range AS (
-    SELECT drive_id, ego_id, chain_id, min(s_start_m) AS begin_m, max(s_start_m + length_m) AS end_m FROM corridor GROUP BY ALL
+    SELECT drive_id, ego_id, chain_id, min(s_start_m) AS begin_m, max(s_start_m + length_m) AS end_m FROM _corridor GROUP BY ALL
 ),
 -- Places where the lanes of a chain do not meet: an end without a link although the map continues, and holes between two consecutive lanes.
 lanelet_end AS (
@@ -52,9 +52,9 @@ lanelet_end AS (
         c.drive_id, c.ego_id, c.chain_id, c.seq, c.seq = max(c.seq) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id) AS is_last,
         g.environment_id, c.lanelet_id, c.s_start_m + c.length_m AS end_m,
         p.x1_m AS x_m, p.y1_m AS y_m, p.tx1 AS tx, p.ty1 AS ty, p.hw1_m AS half_width_m
-    FROM corridor c
+    FROM _corridor c
     JOIN data_log g USING (drive_id)
-    JOIN lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
+    JOIN _lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
 ),
 lane_hole AS (
     -- If only the link is missing, an object straight beyond the end of the lane is ahead.
@@ -65,8 +65,8 @@ lane_hole AS (
     UNION ALL
     SELECT e.*, along0(f.x0_m, f.y0_m, e.x_m, e.y_m, e.tx, e.ty) AS hole_length_m
     FROM lanelet_end e
-    JOIN corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.seq = e.seq + 1
-    JOIN lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
+    JOIN _corridor c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id AND c.chain_id = e.chain_id AND c.seq = e.seq + 1
+    JOIN _lane_segment f ON f.environment_id = e.environment_id AND f.lanelet_id = c.lanelet_id AND f.k = 0
     WHERE hole_length_m > f.slack0_m
 ),
 object_without_position AS (SELECT DISTINCT drive_id, ego_id, object_id FROM missing_step),
@@ -126,7 +126,7 @@ sighting AS (
         END AS along
     FROM credible_pair p
     JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
-    LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    LEFT JOIN _ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
     LEFT JOIN corridor_range z ON z.drive_id = e.drive_id AND z.ego_id = e.ego_id AND z.chain_id = e.chain_id
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id, chain_id FROM lane_hole WHERE NOT is_last) h ON h.drive_id = e.drive_id AND h.ego_id = e.ego_id AND h.chain_id = e.chain_id
     WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
@@ -171,9 +171,9 @@ step_with_sightings AS (
     ASOF LEFT JOIN written_sample wa ON wa.drive_id = m.drive_id AND wa.ego_id = m.ego_id AND wa.object_id = m.object_id AND wa.t_ns >= m.t_ns
     JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t_ns = m.t_ns
     JOIN data_log g ON g.drive_id = m.drive_id
-    LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
-    LEFT JOIN track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = wb.t_ns
-    LEFT JOIN track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = wa.t_ns
+    LEFT JOIN _ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+    LEFT JOIN _track_end tb ON tb.drive_id = m.drive_id AND tb.ego_id = m.ego_id AND tb.object_id = m.object_id AND tb.lost AND tb.t_ns = wb.t_ns
+    LEFT JOIN _track_end ta ON ta.drive_id = m.drive_id AND ta.ego_id = m.ego_id AND ta.object_id = m.object_id AND NOT ta.lost AND ta.t_ns = wa.t_ns
 ),
 -- The range of stations in which the object can be.
 station_range AS (
@@ -207,7 +207,7 @@ view_step AS (
         b.*, g.around_m, g.lane_m AS lane_in_view_m,
         b.late AND coalesce(g.around_m >= watched_m(b.speed_mps, greatest(b.t_ns - lag(b.t_ns) OVER w, lead(b.t_ns) OVER w - b.t_ns) / 1e9), false) AS is_in_view
     FROM distance_bound b
-    LEFT JOIN sight g USING (drive_id, ego_id, t_ns)
+    LEFT JOIN _sight g USING (drive_id, ego_id, t_ns)
     WINDOW w AS (PARTITION BY b.drive_id, b.ego_id, b.object_id ORDER BY b.t_ns)
 ),
 unwatched_count AS (

@@ -20,8 +20,8 @@ ended_track AS (
     FROM last_sample n
     JOIN clock c USING (drive_id, ego_id)
     JOIN data_log g USING (drive_id)
-    LEFT JOIN track_end r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.object_id = n.object_id AND r.t_ns = n.t_last_ns AND r.lost
-    ANTI JOIN (FROM track_off_level WHERE lost) l ON l.drive_id = n.drive_id AND l.ego_id = n.ego_id AND l.object_id = n.object_id
+    LEFT JOIN _track_end r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.object_id = n.object_id AND r.t_ns = n.t_last_ns AND r.lost
+    ANTI JOIN (FROM _track_off_level WHERE lost) l ON l.drive_id = n.drive_id AND l.ego_id = n.ego_id AND l.object_id = n.object_id
     WHERE n.t_last_ns + c.max_gap_ns < c.t_end_ns
         -- An actor that leaves the recorder's view, behind another box or out of range, does not come near unseen.
         AND (r.plain_ns IS NULL OR r.plain_ns > n.t_last_ns)

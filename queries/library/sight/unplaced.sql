@@ -8,7 +8,7 @@ CREATE TABLE unplaced (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- a vehicle that may be on the road ahead, but has no position on it
-    code VARCHAR NOT NULL             -- [unplaced_cause + lost + lost_behind + appeared + beyond_map] the reason; see unseen
+    code VARCHAR NOT NULL             -- [unplaced_cause + lost + lost_behind + appeared + beyond_map] the reason; see _unseen
 );
 
 INSERT INTO unplaced BY NAME
@@ -40,7 +40,7 @@ FROM (
     SELECT * FROM incomplete_pair
     UNION ALL
     SELECT u.drive_id, u.ego_id, u.t_ns, u.object_id, u.code
-    FROM unseen u
+    FROM _unseen u
     JOIN road_user a ON a.drive_id = u.drive_id AND a.actor_id = u.object_id
     WHERE u.near AND may_be_vehicle(a.actor_class)
 )

@@ -94,12 +94,12 @@ def complete_table_scene(reads: Collection[str], given_tables: Mapping[str, Any]
         with collect_problems(problems):
             scene[table] = rows_of_blocks(table, blocks, f"given: {table}")
     raise_problems(problems)
-    if computed := {"step", "clock", "ego_clock"} & set(reads):
-        said = {table: scene.pop(table, [{}]) for table in ("clock", "ego_clock")}
-        clocks = said["clock"] if said["clock"] != [{}] else said["ego_clock"]
+    if computed := {"step", "clock", "_ego_clock"} & set(reads):
+        said = {table: scene.pop(table, [{}]) for table in ("clock", "_ego_clock")}
+        clocks = said["clock"] if said["clock"] != [{}] else said["_ego_clock"]
         steps = _step_rows(scene, clocks[0].get("max_gap_ns"))
-        scene |= {"step": steps, "clock": _clock_rows(steps, clocks), "ego_clock": _clock_rows(steps, clocks)}
-        for table in {"step", "clock", "ego_clock"} - computed:
+        scene |= {"step": steps, "clock": _clock_rows(steps, clocks), "_ego_clock": _clock_rows(steps, clocks)}
+        for table in {"step", "clock", "_ego_clock"} - computed:
             del scene[table]
     if "data_log" in reads:
         drives = dict.fromkeys(row["drive_id"] for rows in scene.values() for row in rows if "drive_id" in row)

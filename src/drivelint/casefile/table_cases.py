@@ -11,7 +11,7 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
       expect: {t_s: 0..1 by 0.5, object_id: y, gap_m: {else: 20, 1: 19.5}}
 
 * `given` and `expect` have the form of `given` in the cases of rules: blocks with scalars, lists, ranges, and values by time.
-* `step`, `clock` and `ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
+* `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
   Numbers must agree to the written decimals, at least two. `expect: []` means: no row.

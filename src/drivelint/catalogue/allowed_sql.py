@@ -10,6 +10,7 @@ from typing import Final
 from drivelint.facts import toml_beside
 from drivelint.phrases import nearest_word
 from drivelint.sql import declarations, store
+from drivelint.sql.library import library_tables
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each reference point is judged."""
@@ -38,14 +39,15 @@ def functions() -> frozenset[str]:
 
 @cache
 def tables() -> frozenset[str]:
-    """Return the tables that a rule may read: the tables of `schemas/` except outputs, and `ENGINE_TABLES`."""
+    """Return the tables that a rule may read: all declared ones except outputs and private ones, and `ENGINE_TABLES`."""
     outputs = {table for file in _OUTPUT_SCHEMAS for table in declarations.column_comments(file)}
-    return frozenset(declarations.column_comments().keys() - outputs) | ENGINE_TABLES
+    private = {table.name for table in library_tables().values() if table.is_private}
+    return frozenset(declarations.column_comments().keys() - outputs - private) | ENGINE_TABLES
 
 
 def unknown_table_message(name: str) -> str:
     """Return the message that a rule cannot read this table, with the most similar table."""
     near = nearest_word(name, tables())
     return f"there is no table {name!r} for rules; " + (
-        f"did you mean {near!r}?" if near else "they read the tables of schemas/*.sql only"
+        f"did you mean {near!r}?" if near else "drivelint docs dictionary prints those that they read"
     )

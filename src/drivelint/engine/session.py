@@ -301,7 +301,7 @@ class JudgingSession:
         if not self._kept:
             return
         for table in tables:
-            whole = has_shared_rows and ("ego_id" not in declarations.column_comments()[table] or table == "ego_clock")
+            whole = has_shared_rows and ("ego_id" not in declarations.column_comments()[table] or table == "_ego_clock")
             known = f" EXCEPT FROM kept.{table}" if whole else ""
             self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 

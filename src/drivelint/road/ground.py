@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 SQUARE_SIDE_M: Final = 2.0
-"""The size of a square of the grid of `lane_cell`."""
+"""The size of a square of the grid of `_lane_cell`."""
 BYTES_PER_SQUARE: Final = 224
-"""The bytes of a square in the database: a row of `lane_cell`, and the rows of `strip_cell` beside the lane."""
+"""The bytes of a square in the database: a row of `_lane_cell`, and the rows of `_strip_cell` beside the lane."""
 
 
 def approximate_square_count(lane_points: pa.Table) -> float:
-    """Return the approximate number of rows of `lane_cell`: the squares that the bounding boxes of lane segments touch."""
+    """Return the approximate number of rows of `_lane_cell`: the squares that the bounding boxes of lane segments touch."""
     if lane_points.num_rows < 2:
         return 0.0
     lane = pc.dictionary_encode(lane_points["lanelet_id"].combine_chunks()).indices.to_numpy()

@@ -6,7 +6,7 @@
 -- in the ego's way has no class in this table, because nothing is known about it. The same applies to an actor beside the path that the ego
 -- would hit within two seconds, both with its present curvature and straight on: the road may bend there, or the ego swerves.
 -- lifetime: part
-CREATE TABLE lane_ahead (
+CREATE TABLE _lane_ahead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
@@ -22,11 +22,11 @@ CREATE TABLE lane_ahead (
     outside BOOLEAN                   -- no part of the actor is in the running lane: it is beside the lane, faces the ego and is in the ego's way {position}
 );
 
-INSERT INTO lane_ahead BY NAME
+INSERT INTO _lane_ahead BY NAME
 WITH
 own_way_end AS (
     SELECT drive_id, ego_id, seg AS chain_id, min(driven_m) AS driven_m
-    FROM own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id)
+    FROM _own_way SEMI JOIN (FROM data_log WHERE environment_id IS NULL) USING (drive_id)
     GROUP BY drive_id, ego_id, seg
 ),
 -- Actors that follow a lane of a junction. If such an actor comes across the ego's path, it crosses that path and is not ahead: see
@@ -84,7 +84,7 @@ on_course AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     SEMI JOIN own_way_end n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id
-    ASOF JOIN (FROM own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.seg = e.chain_id AND s.t_from_ns <= e.t_ns
+    ASOF JOIN (FROM _own_way WHERE t_from_ns IS NOT NULL) s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.seg = e.chain_id AND s.t_from_ns <= e.t_ns
     CROSS JOIN LATERAL (
         SELECT
             (p.x_m - e.x_m) * cos(e.yaw_rad) + (p.y_m - e.y_m) * sin(e.yaw_rad) AS dx, (p.y_m - e.y_m) * cos(e.yaw_rad) - (p.x_m - e.x_m) * sin(e.yaw_rad) AS dy,
@@ -101,7 +101,7 @@ SELECT
     o.across_mps, o.soon, o.outside
 FROM object_ahead o
 -- The ego neither meets nor follows an object that its own path passes.
-LEFT JOIN passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
+LEFT JOIN _passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
 WHERE (o.is_centre_in_lane OR o.soon) AND b.is_sure IS DISTINCT FROM true
 UNION ALL BY NAME
 SELECT c.* EXCLUDE (is_course_held) FROM on_course c

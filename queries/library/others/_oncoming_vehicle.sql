@@ -3,7 +3,7 @@
 -- vehicle that never moved is parked and does not count. A horse on the road counts as a vehicle. A vehicle from another lane counts from
 -- 15 s before it reaches this lane, at the distance that it then really drives.
 -- lifetime: part
-CREATE TABLE oncoming_vehicle (
+CREATE TABLE _oncoming_vehicle (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
@@ -14,7 +14,7 @@ CREATE TABLE oncoming_vehicle (
     on_its_way BOOLEAN NOT NULL       -- it is not on the corridor yet, but gets there within 15 s {position, heading, velocity}
 );
 
-INSERT INTO oncoming_vehicle BY NAME
+INSERT INTO _oncoming_vehicle BY NAME
 WITH ego_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
     FROM ego_state e

@@ -1,13 +1,13 @@
 -- Every 2 m grid cell that the lane area of a segment may touch: the cells of its bounding box whose centre is within half a cell's
 -- diagonal of that area. Each row contains the segment itself, so that one join gives the position of a point.
 -- lifetime: map
-CREATE TABLE lane_cell (
+CREATE TABLE _lane_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     cell BIGINT NOT NULL,             -- 2 m grid cell that the segment's lane area may touch
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     drivable BOOLEAN NOT NULL,        -- see lanelet
     footway BOOLEAN,                  -- for pedestrians only; NULL: the use of the lane is not known
-    k INTEGER NOT NULL,               -- number of the segment, see lane_segment
+    k INTEGER NOT NULL,               -- number of the segment, see _lane_segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
     len_m DOUBLE NOT NULL,            -- length of the segment along the centre line
     x0_m DOUBLE NOT NULL,             -- start, x
@@ -20,11 +20,11 @@ CREATE TABLE lane_cell (
     tx1 DOUBLE NOT NULL,              -- unit tangent at the end, x
     ty1 DOUBLE NOT NULL,              -- unit tangent at the end, y
     hw1_m DOUBLE NOT NULL,            -- half width of the lane at the end
-    slack0_m DOUBLE NOT NULL,         -- see lane_segment
-    slack1_m DOUBLE NOT NULL          -- see lane_segment
+    slack0_m DOUBLE NOT NULL,         -- see _lane_segment
+    slack1_m DOUBLE NOT NULL          -- see _lane_segment
 );
 
-INSERT INTO lane_cell BY NAME
+INSERT INTO _lane_cell BY NAME
 WITH segment_box AS (
     SELECT
         g.*, n.drivable, nullif(n.lane_type, 'unknown') IN ('sidewalk', 'walking') AS footway, greatest(hw0_m, hw1_m) + 0.1 AS reach_m,
@@ -32,7 +32,7 @@ WITH segment_box AS (
         floor((greatest(x0_m, x1_m) + greatest(hw0_m, hw1_m) + 0.1) / 2)::BIGINT AS ix1,
         floor((least(y0_m, y1_m) - greatest(hw0_m, hw1_m) - 0.1) / 2)::BIGINT AS iy0,
         floor((greatest(y0_m, y1_m) + greatest(hw0_m, hw1_m) + 0.1) / 2)::BIGINT AS iy1
-    FROM lane_segment g JOIN lanelet n USING (environment_id, lanelet_id)
+    FROM _lane_segment g JOIN lanelet n USING (environment_id, lanelet_id)
 ),
 cell_column AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM segment_box),
 grid_cell AS (SELECT *, unnest(range(iy0, iy1 + 1)) AS iy FROM cell_column)

@@ -2,7 +2,7 @@
 -- bumpers at the step and at the step before. The rear bumper is that of its trailer, if it tows one. The first step after a hole is kept
 -- for every mark that the ego passed in the hole.
 -- lifetime: part
-CREATE TABLE near_mark (
+CREATE TABLE _near_mark (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- a chain whose strip contains the ego
@@ -20,7 +20,7 @@ CREATE TABLE near_mark (
     running BOOLEAN NOT NULL          -- the chain is the ego's running chain at this step, and the ego is at most 4 m beside the lane
 );
 
-INSERT INTO near_mark BY NAME
+INSERT INTO _near_mark BY NAME
 WITH
 -- Distance from the ego's middle to the rear of its trailer, see ego_state. While the trailer is not seen, its greatest distance counts.
 trailer_reach AS (

@@ -1,11 +1,11 @@
 -- The cells that an actor visited at some time: the corridor is searched only there.
 -- lifetime: part
-CREATE TABLE visited_cell (
+CREATE TABLE _visited_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     cell BIGINT NOT NULL              -- 4 m grid cell that at some time contained the centre of an actor or a corner of an ego
 );
 
-INSERT INTO visited_cell BY NAME
+INSERT INTO _visited_cell BY NAME
 SELECT drive_id, corridor_cell_of(x_m, y_m) AS cell
 FROM state_dynamics
 WHERE x_m IS NOT NULL AND y_m IS NOT NULL

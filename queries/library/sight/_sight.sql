@@ -1,7 +1,7 @@
 -- How far the ego sees at the steps at which an object is missing: around it up to the nearest box, and along its own lane up to the first
 -- actor in the lane. If the lane is not straight, the view ends at the first point that a box hides.
 -- lifetime: part
-CREATE TABLE sight (
+CREATE TABLE _sight (
     drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which an actor without a position is or may be present
@@ -10,11 +10,11 @@ CREATE TABLE sight (
     vehicle_lane_m DOUBLE NOT NULL    -- distance ahead of the ego's front within which no vehicle can be hidden in its lane; a box that reaches less than half a metre into the lane hides no vehicle {position}
 );
 
-INSERT INTO sight BY NAME
+INSERT INTO _sight BY NAME
 WITH missing_step AS (
     SELECT DISTINCT drive_id, ego_id, t_ns
     FROM (
-        SELECT drive_id, ego_id, t_ns FROM unseen
+        SELECT drive_id, ego_id, t_ns FROM _unseen
         UNION ALL
         SELECT drive_id, ego_id, t_ns FROM pair WHERE x_m IS NULL OR y_m IS NULL
     )
@@ -38,19 +38,19 @@ nearest_box AS (
 ),
 corridor_segment AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.s_start_m + g.s0_m AS s_m, g.x0_m, g.y0_m, g.tx0, g.ty0
-    FROM corridor c
+    FROM _corridor c
     JOIN data_log l USING (drive_id)
-    JOIN lane_segment g ON g.environment_id = l.environment_id AND g.lanelet_id = c.lanelet_id
+    JOIN _lane_segment g ON g.environment_id = l.environment_id AND g.lanelet_id = c.lanelet_id
     WHERE l.in_sight
     UNION ALL
     SELECT w.drive_id, w.ego_id, w.seg, w.s0_m, w.x0_m, w.y0_m, w.tx0, w.ty0
-    FROM own_way w
+    FROM _own_way w
     SEMI JOIN (FROM data_log WHERE environment_id IS NULL AND in_sight) l ON l.drive_id = w.drive_id
 ),
 -- Beyond the end of its own path, the ego's lane is not known.
 own_way_end AS (
     SELECT w.drive_id, w.ego_id, w.seg AS chain_id, max(w.s0_m + w.len_m) AS end_m
-    FROM own_way w
+    FROM _own_way w
     SEMI JOIN (FROM data_log WHERE environment_id IS NULL) l ON l.drive_id = w.drive_id
     GROUP BY ALL
 ),

@@ -1,14 +1,14 @@
 -- Actors of the log that belong to the ego: the trailer that it tows, and the same vehicle under another id before or after the ego's own
 -- track.
 -- lifetime: part
-CREATE TABLE ego_part (
+CREATE TABLE _ego_part (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor of the log that belongs to the ego and is no other road user
     part VARCHAR NOT NULL             -- [part_of_ego]
 );
 
-INSERT INTO ego_part BY NAME
+INSERT INTO _ego_part BY NAME
 WITH track AS (
     SELECT drive_id, actor_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM state_dynamics GROUP BY drive_id, actor_id
 ),

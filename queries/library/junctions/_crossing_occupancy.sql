@@ -1,7 +1,7 @@
 -- Actors that may be on foot, on each half of a pedestrian crossing: one row per stretch of samples without a hole. An actor of class
 -- object, which stands on the crossing in the whole log, may be a person who waits.
 -- lifetime: part
-CREATE TABLE crossing_occupancy (
+CREATE TABLE _crossing_occupancy (
     drive_id VARCHAR NOT NULL,        -- the drive
     crossing_id VARCHAR NOT NULL,     -- a pedestrian crossing of the map
     object_id VARCHAR NOT NULL,       -- an actor on foot, or of unknown class, with its centre on the crossing
@@ -10,11 +10,11 @@ CREATE TABLE crossing_occupancy (
     t_to_ns BIGINT NOT NULL           -- last sample on this half {position}
 );
 
-INSERT INTO crossing_occupancy BY NAME
+INSERT INTO _crossing_occupancy BY NAME
 WITH walker AS (
     SELECT a.drive_id, a.actor_id, c.max_gap_ns
     FROM road_user a
-    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id) c USING (drive_id)
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id) c USING (drive_id)
     WHERE may_walk(a.actor_class) OR a.actor_class = 'object'
 ),
 crossing_sample AS (

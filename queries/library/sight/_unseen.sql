@@ -2,7 +2,7 @@
 -- `near`: when seen, the actor was close, within the sensor's range, or coming towards the ego. While it is not seen, it may be anywhere on
 -- the road. If its position is in doubt when it is last or first seen, it may have been near.
 -- lifetime: part
-CREATE TABLE unseen (
+CREATE TABLE _unseen (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which the log does not have the object
@@ -15,7 +15,7 @@ CREATE TABLE unseen (
     off_behind_m DOUBLE               -- in the same case: distance from the ego's rear to the corridor's near end; NULL: as off_ahead_m {position}
 );
 
-INSERT INTO unseen BY NAME
+INSERT INTO _unseen BY NAME
 WITH track AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
 ),
@@ -27,7 +27,7 @@ map_end AS (
     FROM (
         SELECT
             drive_id, ego_id, chain_id, max({'end_m': s_start_m + length_m, 'id': lanelet_id}) AS last_lanelet, min({'begin_m': s_start_m, 'id': lanelet_id}) AS first_lanelet
-        FROM corridor
+        FROM _corridor
         GROUP BY ALL
     ) r
     JOIN data_log g USING (drive_id)
@@ -73,7 +73,7 @@ sighting AS (
     JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = v.t_ns
     JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = v.t_ns
     LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
-    LEFT JOIN ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
+    LEFT JOIN _ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
     LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
     LEFT JOIN doubted_place a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.actor_id = e.object_id AND a.t_ns = v.t_ns
     LEFT JOIN doubted_place b ON b.drive_id = e.drive_id AND b.ego_id = e.ego_id AND b.actor_id = e.ego_id AND b.t_ns = v.t_ns
@@ -81,7 +81,7 @@ sighting AS (
     CROSS JOIN LATERAL (
         SELECT q.is_placed, CASE WHEN q.is_placed THEN p.distance_m END AS distance_m, CASE WHEN q.is_placed THEN p.front_s_m END AS front_s_m, CASE WHEN q.is_placed THEN p.rear_s_m END AS rear_s_m
     ) credible
-    ANTI JOIN track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = v.lost
+    ANTI JOIN _track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = v.lost
     WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
 ),
 judged_sighting AS (
@@ -112,7 +112,7 @@ CROSS JOIN LATERAL (
 JOIN step st ON st.drive_id = t.drive_id AND st.ego_id = t.ego_id
     AND CASE WHEN t.lost THEN st.t_ns > t.t_ns AND st.t_ns <= t.t_ns + horizon.horizon_ns ELSE st.t_ns < t.t_ns AND st.t_ns >= t.t_ns - horizon.horizon_ns END
 LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
-LEFT JOIN ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
+LEFT JOIN _ego_road r ON r.drive_id = e.drive_id AND r.ego_id = e.ego_id AND r.chain_id = e.chain_id
 LEFT JOIN map_end m ON m.drive_id = e.drive_id AND m.ego_id = e.ego_id AND m.chain_id = e.chain_id
 CROSS JOIN LATERAL (SELECT CASE WHEN r.road = t.road THEN t.offset_m - r.offset_m END AS shift_m, CASE WHEN r.chain_id = t.chain_id THEN 0.0 ELSE lane_station_error_m() END AS station_error_m) y
 CROSS JOIN LATERAL (

@@ -1,7 +1,7 @@
 -- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit groups the samples of one actor in one grid cell,
 -- one 10 s slot and one 5-degree heading step. Its box contains the whole area that the actor covers in these samples.
 -- lifetime: part
-CREATE TABLE meeting (
+CREATE TABLE _meeting (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     actor_id VARCHAR NOT NULL,        -- the ego, or a trailer of the ego, whose box this visit belongs to
@@ -15,7 +15,7 @@ CREATE TABLE meeting (
     object_heading INTEGER NOT NULL   -- visit of the object: number of the 5-degree heading step {heading}
 );
 
-INSERT INTO meeting BY NAME
+INSERT INTO _meeting BY NAME
 WITH
 -- An actor that never moves has no path to meet. Another rule judges contact with it.
 moving_actor AS (
@@ -26,7 +26,7 @@ moving_actor AS (
 ),
 grid AS (
     SELECT drive_id, max(max_gap_s) AS max_gap_s, 2 * max(sqrt(driven_half_m(length_m, speed_mps, max_gap_s) ** 2 + (width_m / 2) ** 2)) + 0.1 AS cell_m
-    FROM moving_actor JOIN (SELECT drive_id, max(max_gap_ns) / 1e9 AS max_gap_s FROM ego_clock GROUP BY drive_id) USING (drive_id)
+    FROM moving_actor JOIN (SELECT drive_id, max(max_gap_ns) / 1e9 AS max_gap_s FROM _ego_clock GROUP BY drive_id) USING (drive_id)
     GROUP BY drive_id
     HAVING cell_m IS NOT NULL
 ),
@@ -48,7 +48,7 @@ visit AS MATERIALIZED (
     GROUP BY drive_id, actor_id, cell, slot, heading
 ),
 -- A trailer that the ego tows is part of the ego.
-ego_visit AS (SELECT o.ego_id, v.* FROM visit v JOIN ego_actor o USING (drive_id, actor_id)),
+ego_visit AS (SELECT o.ego_id, v.* FROM visit v JOIN _ego_actor o USING (drive_id, actor_id)),
 nearby_cell AS (
     SELECT v.*, v.cell + cell_key(x.i, y.i) AS near_cell, v.slot + t.i AS near_slot
     FROM ego_visit v
@@ -59,5 +59,5 @@ SELECT
     o.actor_id AS object_id, o.cell AS object_cell, o.slot AS object_slot, o.heading AS object_heading
 FROM nearby_cell e
 JOIN visit o ON o.drive_id = e.drive_id AND o.cell = e.near_cell AND o.slot = e.near_slot AND o.actor_id <> e.ego_id
-ANTI JOIN ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = o.actor_id
+ANTI JOIN _ego_part p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = o.actor_id
 WHERE heading_steps_apart(o.heading, e.heading) > 3 AND o.x_min_m <= e.x_max_m AND o.x_max_m >= e.x_min_m AND o.y_min_m <= e.y_max_m AND o.y_max_m >= e.y_min_m

@@ -1,7 +1,7 @@
 -- The running chain with the lane beside it on the overtaking side. Inside a junction, the lane beside is taken from before the junction,
 -- else from after it.
 -- lifetime: part
-CREATE TABLE corridor (
+CREATE TABLE _corridor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- the running chain
@@ -14,7 +14,7 @@ CREATE TABLE corridor (
     over_against BOOLEAN              -- that lane is driven in the opposite direction {position, heading, size}
 );
 
-INSERT INTO corridor BY NAME
+INSERT INTO _corridor BY NAME
 WITH overtaking_lane AS (
     SELECT e.environment_id, o.lanelet_id, o.against, from_picometres(sum(to_picometres(o.s_end_m - o.s_start_m))) AS along_m, max(o.gap_m + o.width_m) AS width_m
     FROM environment e

@@ -1,7 +1,7 @@
 -- Stations along the road, common to all lanes between which the ego changes. Where it crosses from one lane into the next, the two chains
 -- have the same station. A chain that the ego entered without crossing a line begins a new road.
 -- lifetime: part
-CREATE TABLE ego_road (
+CREATE TABLE _ego_road (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     chain_id INTEGER NOT NULL,        -- a running chain, see chain
@@ -9,7 +9,7 @@ CREATE TABLE ego_road (
     offset_m DOUBLE NOT NULL          -- difference that is added to a station of the chain to get the station along the road {position}
 );
 
-INSERT INTO ego_road BY NAME
+INSERT INTO _ego_road BY NAME
 WITH chain_start AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns FROM ego_state WHERE chain_id IS NOT NULL GROUP BY ALL
 ),

@@ -1,13 +1,13 @@
 -- Pairs of lanes of different roads that overlap in plan without evidence, from heights, junctions or links, that they meet: a bridge, or a
 -- map without this information. The centre line of one lane, metre by metre, is looked up in the area of the other.
 -- lifetime: map
-CREATE TABLE lane_apart (
+CREATE TABLE _lane_apart (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
     other_id VARCHAR NOT NULL         -- a lanelet of another road over or under it, as far as the map shows: no junction, link or common end joins the two (only decks may begin and end together), and their heights differ by more than 2.5 m or are not known; each pair has two rows
 );
 
-INSERT INTO lane_apart BY NAME
+INSERT INTO _lane_apart BY NAME
 WITH RECURSIVE map_with_heights AS (SELECT environment_id FROM lane_point GROUP BY environment_id HAVING max(z_m) > min(z_m)),
 segment_height AS (
     SELECT p.environment_id, p.lanelet_id, p.k, p.z_m, lead(p.z_m) OVER (PARTITION BY p.environment_id, p.lanelet_id ORDER BY p.k) AS z1_m
@@ -17,7 +17,7 @@ centre_point AS (
     SELECT
         g.environment_id, g.lanelet_id, n.road_id, g.x0_m + i.u * (g.x1_m - g.x0_m) AS x_m, g.y0_m + i.u * (g.y1_m - g.y0_m) AS y_m,
         h.z_m + i.u * (h.z1_m - h.z_m) AS z_m
-    FROM lane_segment g
+    FROM _lane_segment g
     JOIN lanelet n USING (environment_id, lanelet_id)
     LEFT JOIN segment_height h USING (environment_id, lanelet_id, k)
     CROSS JOIN LATERAL (SELECT unnest(range(ceil(g.len_m)::BIGINT)) / ceil(g.len_m) AS u) i
@@ -28,7 +28,7 @@ candidate AS (
         s.*, c.* EXCLUDE (environment_id, lanelet_id, cell, drivable, footway), c.lanelet_id AS other_id,
         along0(s.x_m, s.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) AS a0, along1(s.x_m, s.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM centre_point s
-    JOIN lane_cell c ON c.environment_id = s.environment_id AND c.cell = lane_cell_of(s.x_m, s.y_m)
+    JOIN _lane_cell c ON c.environment_id = s.environment_id AND c.cell = lane_cell_of(s.x_m, s.y_m)
     WHERE c.drivable AND c.lanelet_id <> s.lanelet_id
 ),
 covered_point AS (

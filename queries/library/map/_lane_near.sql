@@ -1,13 +1,13 @@
 -- The drivable lanelets that follow a drivable lanelet within three links. They show whether two positions can belong to one path.
 -- lifetime: map
-CREATE TABLE lane_near (
+CREATE TABLE _lane_near (
     environment_id VARCHAR NOT NULL,  -- the map
     from_id VARCHAR NOT NULL,         -- a drivable lanelet
     to_id VARCHAR NOT NULL,           -- the same lanelet, or a lanelet that continues it within three links
     hops INTEGER NOT NULL             -- least number of links from from_id to to_id, 0 to 3
 );
 
-INSERT INTO lane_near BY NAME
+INSERT INTO _lane_near BY NAME
 WITH link AS (
     SELECT l.environment_id, l.from_id, l.to_id
     FROM lane_link l

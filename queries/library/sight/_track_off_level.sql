@@ -1,14 +1,14 @@
 -- Tracks that end or begin on another level: the actor is recorded, but over or under the ego's road, where pair has no row for it. Such an
 -- actor is not lost, and it does not appear from nowhere.
 -- lifetime: part
-CREATE TABLE track_off_level (
+CREATE TABLE _track_off_level (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor that has rows in pair, but at the last (or first) sample of its track is over or under the ego's road
     lost BOOLEAN NOT NULL             -- true: at the end of the track; false: at its beginning {position}
 );
 
-INSERT INTO track_off_level BY NAME
+INSERT INTO _track_off_level BY NAME
 WITH drive_with_heights AS (SELECT DISTINCT drive_id FROM state_dynamics WHERE z_m IS NOT NULL),
 track_in_pair AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns

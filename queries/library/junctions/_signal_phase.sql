@@ -1,7 +1,7 @@
 -- The phases of every light: a state applies until the next sample. If a light was recorded continuously and then not, its state is not
 -- known from then on. If it was recorded only at its changes, its last state still applies.
 -- lifetime: part
-CREATE TABLE signal_phase (
+CREATE TABLE _signal_phase (
     drive_id VARCHAR NOT NULL,        -- the drive
     signal_id VARCHAR NOT NULL,       -- see signal_state
     t_from_ns BIGINT NOT NULL,        -- start of the phase
@@ -9,7 +9,7 @@ CREATE TABLE signal_phase (
     state VARCHAR                     -- [light_state] see signal_state; NULL: not known, as after the last sample of a light that was recorded at least once a second
 );
 
-INSERT INTO signal_phase BY NAME
+INSERT INTO _signal_phase BY NAME
 WITH state_sample AS (
     SELECT
         drive_id, signal_id, t_ns,

@@ -1,14 +1,14 @@
 -- Roads of one direction that are halves of one road: the other direction is a separate road beside it, along most of a lane. The id that
 -- comes first stands for both roads.
 -- lifetime: map
-CREATE TABLE road_half (
+CREATE TABLE _road_half (
     environment_id VARCHAR NOT NULL,  -- the map
     road_id VARCHAR NOT NULL,         -- a road of one direction
     of_road_id VARCHAR NOT NULL,      -- the adjacent road of the opposite direction, whose id comes first: for a driver, the two are one road
     turned BOOLEAN NOT NULL           -- the reference lines of the two roads run in opposite directions
 );
 
-INSERT INTO road_half BY NAME
+INSERT INTO _road_half BY NAME
 WITH one_way_road AS (
     SELECT environment_id, road_id, min(along_road) AS along_road
     FROM lanelet

@@ -1,12 +1,12 @@
 -- The boxes of actors whose paths may meet, in the cells where they may meet. Between two samples, a box moves straight on. Moments are
 -- interpolated so that a box never moves by more than half its length between two of them.
 -- lifetime: part
-CREATE TABLE swept_box (
+CREATE TABLE _swept_box (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- an actor of meeting, ego or not; only in the cells of its visits and the cells around them
     t_ns BIGINT NOT NULL,             -- a sample with position, heading and size, or an interpolated moment between two continuous samples
     t_sample_ns BIGINT NOT NULL,      -- time of the nearest sample {position}
-    cell BIGINT NOT NULL,             -- visit of that sample, see meeting: the grid cell {position}
+    cell BIGINT NOT NULL,             -- visit of that sample, see _meeting: the grid cell {position}
     slot INTEGER NOT NULL,            -- visit of that sample: number of the 10 s slot {position}
     heading INTEGER NOT NULL,         -- visit of that sample: number of the 5-degree heading step {heading}
     ix INTEGER NOT NULL,              -- column of the drive's grid that contains the box centre {position}
@@ -24,20 +24,20 @@ CREATE TABLE swept_box (
     t_after_ns BIGINT                 -- the next moment; NULL: the track ends, or there is a hole {position}
 );
 
-INSERT INTO swept_box BY NAME
+INSERT INTO _swept_box BY NAME
 WITH
 grid_scale AS (
     SELECT drive_id, max(max_gap_ns) AS max_gap_ns, any_value(cell_m) AS cell_m
-    FROM (SELECT drive_id, any_value(cell_m) AS cell_m FROM meeting GROUP BY drive_id) JOIN ego_clock USING (drive_id)
+    FROM (SELECT drive_id, any_value(cell_m) AS cell_m FROM _meeting GROUP BY drive_id) JOIN _ego_clock USING (drive_id)
     GROUP BY drive_id
 ),
 -- The cells in which one of the two actors may be near the other.
 meeting_place AS (
     SELECT DISTINCT m.drive_id, m.actor_id, m.cell + cell_key(x.i, y.i) AS cell
     FROM (
-        SELECT drive_id, unnest([actor_id, object_id]) AS actor_id, cell FROM meeting
+        SELECT drive_id, unnest([actor_id, object_id]) AS actor_id, cell FROM _meeting
         UNION
-        SELECT drive_id, unnest([actor_id, object_id]), object_cell FROM meeting
+        SELECT drive_id, unnest([actor_id, object_id]), object_cell FROM _meeting
     ) m
     CROSS JOIN (VALUES (-1), (0), (1)) AS x(i) CROSS JOIN (VALUES (-1), (0), (1)) AS y(i)
 ),

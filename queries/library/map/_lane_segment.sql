@@ -1,6 +1,6 @@
 -- Lanelets cut into straight pieces between consecutive points, with the tangents at both ends.
 -- lifetime: map
-CREATE TABLE lane_segment (
+CREATE TABLE _lane_segment (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
     k INTEGER NOT NULL,               -- number of the segment, which runs from point k to point k + 1
@@ -20,7 +20,7 @@ CREATE TABLE lane_segment (
     slack1_m DOUBLE NOT NULL          -- how far the segment extends beyond its end, as slack0_m
 );
 
-INSERT INTO lane_segment BY NAME
+INSERT INTO _lane_segment BY NAME
 SELECT
     environment_id, lanelet_id, k, s_m AS s0_m, next.s_m - s_m AS len_m,
     x_m AS x0_m, y_m AS y0_m, tx AS tx0, ty AS ty0, half_width_m AS hw0_m,

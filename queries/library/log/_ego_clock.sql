@@ -1,6 +1,6 @@
 -- The sampling period of every ego of the drives, and its first and last sample.
 -- lifetime: part
-CREATE TABLE ego_clock (
+CREATE TABLE _ego_clock (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- an ego of the drive, also if it is judged in another part of the run
     period_ns BIGINT NOT NULL,        -- see clock
@@ -9,7 +9,7 @@ CREATE TABLE ego_clock (
     t_end_ns BIGINT NOT NULL          -- the ego's last sample
 );
 
-INSERT INTO ego_clock BY NAME
+INSERT INTO _ego_clock BY NAME
 SELECT
     drive_id, actor_id AS ego_id, period_ns,
     ceil(period_ns * max_gap_periods())::BIGINT AS max_gap_ns,

@@ -3,14 +3,14 @@
 -- by less than 20.) Of the two roads, the one with fewer lanes is the exit. If both have the same number, the exit is the road on the side
 -- that is driven on.
 -- lifetime: map
-CREATE TABLE exit_lane (
+CREATE TABLE _exit_lane (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
     from_id VARCHAR,                  -- the through lanelet beside the exit lane; NULL: the exit branches off without one
     side VARCHAR NOT NULL             -- [side] the side on which the exit lane leaves
 );
 
-INSERT INTO exit_lane BY NAME
+INSERT INTO _exit_lane BY NAME
 WITH RECURSIVE carriageway AS (
     SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
 ),

@@ -3,7 +3,7 @@
 -- is out of sight. Before the beginning of a track, the object is out of sight until plain_ns; after plain_ns, the recorder may only not
 -- have found it yet. An actor that leaves the recorder's range, or goes behind another box, is out of sight at once.
 -- lifetime: part
-CREATE TABLE track_end (
+CREATE TABLE _track_end (
     drive_id VARCHAR NOT NULL,        -- the drive; only where data_log.in_sight holds
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor
@@ -12,7 +12,7 @@ CREATE TABLE track_end (
     plain_ns BIGINT NOT NULL          -- time limit of plain view: after it (if lost; else before it), an actor without samples is assumed not to be in plain view {position}
 );
 
-INSERT INTO track_end BY NAME
+INSERT INTO _track_end BY NAME
 WITH incomplete_track AS (
     SELECT e.drive_id, e.ego_id, e.object_id, c.t_start_ns + c.max_gap_ns AS t_begin_limit_ns, c.t_end_ns - c.max_gap_ns AS t_end_limit_ns
     FROM (

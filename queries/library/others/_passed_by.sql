@@ -10,7 +10,7 @@
 -- Beyond the end of the recorded path, the ego is assumed to keep its curvature. It then passes only vehicles that it would also pass with
 -- another curvature.
 -- lifetime: part
-CREATE TABLE passed_by (
+CREATE TABLE _passed_by (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
@@ -18,7 +18,7 @@ CREATE TABLE passed_by (
     is_sure BOOLEAN NOT NULL          -- false: the positions were measured by sensors, and the path overlaps the vehicle by less than their accuracy, or passes it by less than 0.2 m
 );
 
-INSERT INTO passed_by BY NAME
+INSERT INTO _passed_by BY NAME
 WITH candidate AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
@@ -36,7 +36,7 @@ WITH candidate AS (
 ),
 segment_cell AS (
     SELECT w.*, cell_key(floor((x0_m + x1_m) / 8) + i.i, floor((y0_m + y1_m) / 8) + j.j) AS cell
-    FROM own_way w
+    FROM _own_way w
     SEMI JOIN candidate c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id
     CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS i(i) CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS j(j)
 ),
@@ -65,7 +65,7 @@ bend_at_step AS (
     FROM (
         SELECT * REPLACE (last_value(bend_per_m IGNORE NULLS) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns, is_step ROWS UNBOUNDED PRECEDING) AS bend_per_m)
         FROM (
-            SELECT drive_id, ego_id, seg, t_from_ns AS t_ns, bend_per_m, false AS is_step FROM own_way WHERE t_from_ns IS NOT NULL
+            SELECT drive_id, ego_id, seg, t_from_ns AS t_ns, bend_per_m, false AS is_step FROM _own_way WHERE t_from_ns IS NOT NULL
             UNION ALL
             SELECT drive_id, ego_id, seg, t_ns, NULL, true FROM step
         )

@@ -1,13 +1,13 @@
 -- Every 4 m grid cell that the strip beside a drivable segment may touch, found as in lane_cell.
 -- lifetime: map
-CREATE TABLE strip_cell (
+CREATE TABLE _strip_cell (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    k INTEGER NOT NULL,               -- number of the segment, see lane_segment
+    k INTEGER NOT NULL,               -- number of the segment, see _lane_segment
     cell BIGINT NOT NULL              -- 4 m grid cell that the strip of 15 m on both sides of the segment may touch
 );
 
-INSERT INTO strip_cell BY NAME
+INSERT INTO _strip_cell BY NAME
 WITH segment_box AS (
     SELECT
         g.*,
@@ -15,7 +15,7 @@ WITH segment_box AS (
         floor((greatest(x0_m, x1_m) + strip_m() * greatest(abs(ty0), abs(ty1))) / 4)::BIGINT AS ix1,
         floor((least(y0_m, y1_m) - strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy0,
         floor((greatest(y0_m, y1_m) + strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy1
-    FROM lane_segment g
+    FROM _lane_segment g
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = g.lanelet_id AND n.drivable
 ),
 cell_column AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM segment_box),

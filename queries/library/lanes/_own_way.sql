@@ -1,7 +1,7 @@
 -- The recorded path of the ego's box centre, as segments of some 2 m, extrapolated beyond its end with the last curvature. A hole in the
 -- log begins a new piece, because the path across the hole is not recorded.
 -- lifetime: part
-CREATE TABLE own_way (
+CREATE TABLE _own_way (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     seg INTEGER NOT NULL,             -- see step: a new piece of the path begins after a hole
@@ -21,7 +21,7 @@ CREATE TABLE own_way (
     bend_per_m DOUBLE NOT NULL        -- curvature, 1 / radius, left positive {position}
 );
 
-INSERT INTO own_way BY NAME
+INSERT INTO _own_way BY NAME
 WITH placed_step AS (
     SELECT
         st.drive_id, st.ego_id, st.seg, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps,
