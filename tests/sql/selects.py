@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import duckdb
 
 from drivelint import catalogue
-from drivelint.evaluate import temp_tables
 from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.resources import folder
@@ -28,7 +27,7 @@ _INCOMPLETE = re.compile(r"\{\w+\}|^\s*-- [Pp]art of", re.MULTILINE)
 _COMMENTS = re.compile(r"\A(?:\s*--.*\n)*\s*")
 _INTO = re.compile(
     r"(?:CREATE OR REPLACE TEMP (?:TABLE|VIEW) \w+ AS|INSERT INTO \w+(?: BY NAME)?"
-    r"|CREATE OR REPLACE TEMP MACRO \w+\(\w+\) AS TABLE)\s"
+    r"|CREATE OR REPLACE MACRO \w+\(\w+\) AS TABLE)\s"
 )
 
 
@@ -82,13 +81,11 @@ def of_rules() -> dict[str, str]:
         for rule in {_shape(rule): rule for rule in catalogue.load_rules(()).values()}.values():
             for margins in (False, True):
                 binding = Binding(rule, 0, {})
-                run = _Recorder(con, [binding], margins=margins)
-                try:
+                with store.cursor(con) as cursor:
+                    run = _Recorder(cursor, [binding], margins=margins)
                     run.prepare()
                     run.judge_rule(binding)
                     run.aggregate_pending_steps()
-                finally:
-                    temp_tables.drop_tables(con)
                 for no, sql in enumerate(run.texts):
                     if text := select(sql):
                         found[f"{rule.id}, statement {no} {'with' if margins else 'without'} margins"] = text

@@ -13,12 +13,13 @@ import duckdb
 
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
+from drivelint.sql.declarations import lifetimes
 from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, needed_derivations
 from drivelint.sql.library import library_tables
 from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Mapping
 
     from drivelint.sql.derivations import Derivation
 
@@ -56,7 +57,8 @@ def derive(
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
     if n_states > MOST_STATES_FOR_EMPTINESS_TEST:
         todo = {table: replace(step, occasion="") for table, step in todo.items()}
-    empty = store.tables_without_rows(con) - todo.keys()
+    without_rows, types = store.tables_without_rows(con), store.id_types(con)
+    empty, old = without_rows - todo.keys(), todo.keys() - without_rows
     for table in statement_texts("map_shapes").keys() - empty if are_map_tables else ():
         con.execute(statement(f"map_shapes/{table}"))
     workers = DERIVATION_WORKERS if n_states < LEAST_STATES_FOR_ONE_WORKER else 1
@@ -71,11 +73,13 @@ def derive(
             while ready and free:
                 table = ready.popleft()
                 if todo[table].needs & empty:
+                    _leave_empty(con, table, has_old_rows=table in old)
                     empty.add(table)
                     filled.append(table)
                 else:
                     cursor = free.pop()
-                    busy[pool.submit(_fill_table, cursor, todo[table])] = table, cursor
+                    done = pool.submit(_fill_table, cursor, todo[table], types, has_old_rows=table in old)
+                    busy[done] = table, cursor
             for done in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
                 table, cursor = busy.pop(done)
                 if not done.result():
@@ -83,6 +87,13 @@ def derive(
                 free.append(cursor)
                 filled.append(table)
             graph.done(*filled)
+
+
+def _leave_empty(con: duckdb.DuckDBPyConnection, table: str, *, has_old_rows: bool) -> int:
+    """Leave a table without rows, and return their number, 0. The tables of a whole run keep their rows."""
+    if has_old_rows and lifetimes()[table] != "run":
+        store.recreate_empty(con, [table])
+    return 0
 
 
 def _interrupt_until_stopped(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
@@ -94,13 +105,17 @@ def _interrupt_until_stopped(cursors: Iterable[duckdb.DuckDBPyConnection], runni
         left = wait(left, timeout=0.05).not_done
 
 
-def _fill_table(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
-    """Fill one table, and return the number of its rows."""
+def _fill_table(
+    con: duckdb.DuckDBPyConnection, step: Derivation, types: Mapping[str, str], *, has_old_rows: bool
+) -> int:
+    """Fill one table, and return the number of its rows. A table of the whole run gets more rows; others are replaced."""
     try:
         with store.uniform_memory_errors():
             if step.occasion and con.execute(step.occasion).fetchone() is None:
-                return 0
-            return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
+                return _leave_empty(con, step.table, has_old_rows=has_old_rows)
+            if lifetimes()[step.table] == "run":
+                return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
+            return store.create_from_select(con, step.table, step.sql, types)
     except duckdb.OutOfMemoryException:
         raise  # not an error of the query: the caller may have more memory
     except duckdb.Error as error:

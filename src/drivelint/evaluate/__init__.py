@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.errors import UsageError
-from drivelint.evaluate import temp_tables
 from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.evaluate.sql_fragments import Binding
+from drivelint.sql import store
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -50,19 +50,17 @@ def evaluate(
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
-    run = Evaluation(
-        con,
-        bindings,
-        margins=margins,
-        keep_measure_series=keep_measure_series,
-        may_retry=may_retry,
-        limits=limits or RuleLimits(None),
-        release=release,
-    )
-    try:
+    with store.cursor(con) as cursor:  # its end drops all temporary tables
+        run = Evaluation(
+            cursor,
+            bindings,
+            margins=margins,
+            keep_measure_series=keep_measure_series,
+            may_retry=may_retry,
+            limits=limits or RuleLimits(None),
+            release=release,
+        )
         run.judge()
-    finally:
-        temp_tables.drop_tables(con)
 
 
 def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
@@ -73,12 +71,10 @@ def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
     plans: list[str] = []
     for margins in (False, True):
         binding = Binding(rule, 0, {})
-        run = PlanRecorder(con, [binding], margins=margins)
-        try:
+        with store.cursor(con) as cursor:
+            run = PlanRecorder(cursor, [binding], margins=margins)
             run.prepare()
             run.judge_rule(binding)
             run.aggregate_pending_steps()
-        finally:
-            temp_tables.drop_tables(con)
         plans += run.plans
     return plans

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -13,7 +12,7 @@ from drivelint.evaluate import applicability
 from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
 from drivelint.sql import store
 from drivelint.sql.derivations import tables_with_sources
-from drivelint.sql.statements import statement, statement_texts
+from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +27,6 @@ _ALLOWED_WORD_SCHEMA = pa.schema(
     [("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))]
 )
 _QUANTITY_SCHEMA = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
-_CREATE_STATEMENT = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
 def create_tables_and_count_subjects(
@@ -38,8 +36,7 @@ def create_tables_and_count_subjects(
 
     Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions are met at no step of these subjects.
     """
-    for name in ("macros", "sentences", "tables"):
-        con.execute(statement(f"judging/{name}"))
+    con.execute(statement("judging/tables"))
     # as Arrow tables, because binding a list as a parameter takes a tenth of a second
     store.insert(con, "_rule", _rule_rows(bindings))
     store.insert(con, "_needs", _required_signal_rows(bindings))
@@ -104,9 +101,3 @@ def _rows_of_allowed_condition_values(bindings: Sequence[Binding]) -> pa.Table:
             known = (*conditions.with_narrower_values(words), *conditions.broader_values(words))
             rows += [(b.no, code, condition, word) for word in known]
     return pa.table({name: [row[at] for row in rows] for at, name in enumerate(columns)}, schema=_ALLOWED_WORD_SCHEMA)
-
-
-def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
-    """Drop the temporary tables of an evaluation."""
-    made = [("TABLE", "_worded"), *_CREATE_STATEMENT.findall("\n".join(statement_texts("judging").values()))]
-    con.execute(";".join(f"DROP {kind} IF EXISTS temp.{name}" for kind, name in made))

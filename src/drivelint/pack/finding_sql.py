@@ -96,7 +96,7 @@ def called_macro_definitions(sql: str) -> list[str]:
 @cache
 def _macro_definitions_by_name() -> dict[str, str]:
     """Return name -> definition of the macros for rules and for judging."""
-    both = f"{macro_definitions()}\n{statement_texts('judging')['macros']}"
+    both = f"{macro_definitions()}\n{statement_texts('statement_macros')['judging']}"
     found = {}
     for each in syntax.parser().extract_statements(both):
         text = "\n".join(line for line in each.query.strip().splitlines() if line.strip() and not line.startswith("--"))

@@ -16,7 +16,6 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import UsageError
 from drivelint.evaluate.evaluation import Evaluation
 from drivelint.evaluate.sql_fragments import Binding
-from drivelint.evaluate.temp_tables import drop_tables
 from drivelint.explain.source import open_judged_drive_and_source_text
 from drivelint.pack import finding_rows, finding_sql
 from drivelint.pack.bag import Problem
@@ -147,23 +146,20 @@ def _evidence_of_rule(
 ) -> Evidence:
     """Return the evidence of the findings of one rule. The database must still have the rows of the drive."""
     first = findings[0]
-    try:
-        references: dict[int, int] = {}
+    references: dict[int, int] = {}
+    with store.cursor(con) as cursor:
         if rule.kind != "invariant":
             binding = Binding(rule, 0, params)
-            evaluation = Evaluation(con, [binding], margins=True)
+            evaluation = Evaluation(cursor, [binding], margins=True)
             evaluation.prepare()
             evaluation.judge_rule(binding)
             # the reference steps as the condition reads them
-            con.execute("CREATE OR REPLACE TEMP VIEW reference_step AS SELECT * EXCLUDE (rule_no) FROM _reference_step")
-            references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
+            cursor.execute("CREATE TEMP VIEW reference_step AS SELECT * EXCLUDE (rule_no) FROM _reference_step")
+            references = dict(cursor.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
         tables = {
-            table: finding_rows.rows_of_ego(con, table, first["drive_id"], first["ego_id"])
+            table: finding_rows.rows_of_ego(cursor, table, first["drive_id"], first["ego_id"])
             for table in finding_sql.tables_of_condition(rule)
         }
-    finally:
-        con.execute("DROP VIEW IF EXISTS temp.reference_step")
-        drop_tables(con)
     return {
         row["finding_id"]: finding_rows.reproducing_files_or_reason(
             rule, params, row, references.get(row["ref_id"]), tables

@@ -13,7 +13,14 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.sql import progress_bar, words
-from drivelint.sql.declarations import column_comments, column_lists, create_statements, lifetimes, word_columns
+from drivelint.sql.declarations import (
+    column_comments,
+    column_lists,
+    column_types,
+    create_statements,
+    lifetimes,
+    word_columns,
+)
 from drivelint.sql.kept_schemas import cached_schemas
 from drivelint.sql.statements import statement_texts
 from drivelint.temporary import temporary_folder
@@ -110,18 +117,23 @@ def spill_folder(con: duckdb.DuckDBPyConnection) -> str:
 
 _open_cursors_by_connection_id: dict[int, set[duckdb.DuckDBPyConnection]] = {}
 """Id of a connection -> its open cursors: interrupting a connection does not interrupt its cursors."""
+_connection_id_by_cursor_id: dict[int, int] = {}
+"""Id of an open cursor -> id of the connection that it was opened on, so that a cursor of a cursor is interrupted, too."""
 
 
 @contextmanager
 def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a second connection to the database of `con`, which `interrupt` interrupts together with `con`."""
     with con.cursor() as other:
-        mine = _open_cursors_by_connection_id.setdefault(id(con), set())
+        root = _connection_id_by_cursor_id.get(id(con), id(con))
+        mine = _open_cursors_by_connection_id.setdefault(root, set())
         mine.add(other)
+        _connection_id_by_cursor_id[id(other)] = root
         try:
             yield other
         finally:
             mine.discard(other)
+            del _connection_id_by_cursor_id[id(other)]
 
 
 def interrupt(con: duckdb.DuckDBPyConnection) -> None:
@@ -270,19 +282,39 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
 
     Deleted rows use memory until a checkpoint, and a database in memory has no checkpoints.
     """
-    types = {}
-    if codes := _enum_numbers(con):
-        types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
-    made: list[str] = []
+    types, made = id_types(con), list[str]()
     for table in tables:
         body = column_lists()[table]
-        as_text = (
-            table in _TABLES_WITH_TEXT_IDS or lifetimes()[table] == "run"
-        )  # such a table has the ids of several batches
-        for column in types.keys() & column_comments()[table].keys() if not as_text else ():
+        for column in types.keys() & column_comments()[table].keys() if _has_enums(table) else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         made.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
-    con.execute(";".join(made))
+    if made:
+        con.execute(";".join(made))
+
+
+def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, types: Mapping[str, str]) -> int:
+    """Replace a table by the rows of a SELECT, with the declared types of its columns; return the number of rows.
+
+    `types`: those of `id_types`. One statement creates and fills the table. It does not check NOT NULL, as an INSERT does: the tests do.
+    """
+    kinds = {column: kind.removesuffix(" NOT NULL") for column, kind in column_types()[table].items()}
+    if _has_enums(table):
+        kinds |= {column: kind for column, kind in types.items() if column in kinds}
+    columns = ", ".join(f"{column}::{kind} AS {column}" for column, kind in kinds.items())
+    return int(con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()[0][0])
+
+
+def id_types(con: duckdb.DuckDBPyConnection) -> dict[str, str]:
+    """Return column -> type of the ids that `recreate_with_enums` created last; without them, an empty dictionary."""
+    codes = _enum_numbers(con)
+    if not codes:
+        return {}
+    return {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
+
+
+def _has_enums(table: str) -> bool:
+    """Return whether the ids of a table are ENUM columns: not if it has the ids of several batches, or those that a rule returns."""
+    return table not in _TABLES_WITH_TEXT_IDS and lifetimes()[table] != "run"
 
 
 def _enum_numbers(con: duckdb.DuckDBPyConnection) -> list[int]:
@@ -295,8 +327,8 @@ def macro_definitions() -> str:
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:
-    """Create every macro of `queries/macros`; derivations, rules and reasons of verdicts call them."""
-    con.execute(macro_definitions())
+    """Create every macro: derivations, rules and reasons call those of `queries/macros`, drivelint's statements also `statement_macros`."""
+    con.execute("\n".join([macro_definitions(), *statement_texts("statement_macros").values()]))
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:

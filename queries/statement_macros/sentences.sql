@@ -1,7 +1,7 @@
 -- The rows of `_named` or `_failed` with the column `sentence`, and whether that states the observed value and the value that is
 -- required (`reason_measures`). Columns that are read: verdict, code, reason (the author's, or NULL), cause (that, or what the engine found
 -- out), and the times, numbers and names in the sentences of the engine's codes. `_worded` has the words of the causes.
-CREATE OR REPLACE TEMP MACRO with_sentences(verdict_table) AS TABLE
+CREATE OR REPLACE MACRO with_sentences(verdict_table) AS TABLE
 WITH _parts AS (
     -- times in sentences count from the drive's first time stamp, as in every other output: the log's own times may count from 1970
     SELECT n.*, w.words, w.cause_code, w.cause_args,
