@@ -133,6 +133,7 @@ mark_part AS (
     SELECT 'crossing' AS kind, l.drive_id, l.ego_id, l.chain_id, x.crossing_id, l.lanelet_id, l.seq, l.s_start_m + x.s_start_m, l.s_start_m + x.s_end_m
     FROM chain_lanelet l JOIN crossing x USING (environment_id, lanelet_id)
 ),
+-- occasion: mark_part, junction
 numbered_part AS (
     SELECT
         *,

@@ -45,6 +45,7 @@ overlap AS (
     GROUP BY ALL
     HAVING bool_or(coalesce(abs(dz_m) > level_m(), true))
 ),
+-- occasion: overlap
 -- The lanes of one road in one direction (a carriageway), and the carriageways that they lead to. Lanes beside each other begin and end
 -- together.
 carriageway_lane AS (

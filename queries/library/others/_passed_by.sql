@@ -34,6 +34,7 @@ WITH candidate AS (
         AND CASE WHEN p.speed_mps <= standing_mps() THEN true
             ELSE abs(p.d_m - e.d_m) >= p.lat_half_m + e.lat_half_m - may_meet_m AND (has_no_room OR may_meet_m > 0) END
 ),
+-- occasion: candidate
 segment_cell AS (
     SELECT w.*, cell_key(floor((x0_m + x1_m) / 8) + i.i, floor((y0_m + y1_m) / 8) + j.j) AS cell
     FROM _own_way w

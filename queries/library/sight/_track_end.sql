@@ -22,6 +22,7 @@ WITH incomplete_track AS (
     JOIN data_log g USING (drive_id)
     WHERE g.in_sight AND (e.has_holes OR e.t_last_ns + c.max_gap_ns < c.t_end_ns OR e.t_first_ns > c.t_start_ns + c.max_gap_ns)
 ),
+-- occasion: incomplete_track
 placed_sample AS (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.t_ns, st.k, p.x_m, p.y_m,

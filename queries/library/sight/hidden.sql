@@ -266,6 +266,7 @@ pair_in_hole AS (
         AND along0(p.x_m, p.y_m, l.x_m, l.y_m, l.tx, l.ty) <= l.hole_length_m
         AND abs((p.y_m - l.y_m) * l.tx - (p.x_m - l.x_m) * l.ty) < l.half_width_m + 1
 )
+-- occasion: missing_step, incomplete_pair, pair_beyond_corridor, pair_in_hole
 SELECT
     drive_id, ego_id, t_ns, object_id, actor_class, may_be_vehicle(actor_class) AS vehicle,
     greatest(0.0::DOUBLE, coalesce(distance_m, 0.0) - half_sizes_m, along_m, CASE WHEN late THEN coalesce(around_m, 0.0) - half_sizes_m END) AS least_m, ahead, along, late,

@@ -59,6 +59,7 @@ class Evaluation:
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _rules_outside_conditions: set[int] = field(default_factory=set, init=False)
     """The numbers of the rules whose conditions are met at no step."""
+    _n_steps: int = field(default=0, init=False)
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
@@ -69,6 +70,8 @@ class Evaluation:
     _pending: list[Binding] = field(default_factory=list, init=False)
     """The rules whose judged steps are not aggregated to outcomes yet."""
     _n_pending: int = field(default=0, init=False)
+    _has_old_steps: bool = field(default=True, init=False)
+    """Whether the tables of judged steps must be created anew before the next rule."""
     _may_be_double: bool = field(default=False, init=False)
     """Whether there may be several pending steps with the same key."""
     _rules_to_aggregate_separately: set[int] = field(default_factory=set, init=False)
@@ -80,10 +83,9 @@ class Evaluation:
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
         # only built-in rules run in parallel: the growth of memory is a user rule's only if no other rule runs
         shipped = deque(binding for binding in todo if _is_shipped(binding))
-        n_steps = self._count_rows("SELECT count(*) FROM step")
         if (
             len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
-            and LEAST_STEPS_FOR_TWO_CONNECTIONS <= n_steps < TOO_MANY_STEPS_FOR_TWO_CONNECTIONS
+            and LEAST_STEPS_FOR_TWO_CONNECTIONS <= self._n_steps < TOO_MANY_STEPS_FOR_TWO_CONNECTIONS
         ):
             todo = deque(binding for binding in todo if binding not in shipped)
             self._judge_on_two_connections(shipped)
@@ -183,14 +185,12 @@ class Evaluation:
             self.con, self.bindings
         )
         self._forget_pending_steps()
-        self._is_short = self._count_rows("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
-        self._n_subjects = self._count_rows("SELECT count(*) FROM _subject")
-        self._has_holes = self._count_rows("SELECT count(*) FROM _segment WHERE seg > 0") > 0
         self._run_statements("watched")
-        self._check_engagement = self._count_rows("SELECT count(*) FROM _watched") > 0
+        row = self.con.execute(statement("judging/content")).fetchone() or (0, 0, False, False, False)
+        self._n_steps, self._n_subjects, self._has_holes, self._check_engagement, self._has_sensors = row
+        self._is_short = self._n_steps < LEAST_STEPS_FOR_A_FIRST_PASS
         self._empty_tables = store.tables_without_rows(self.con)
         self._has_doubts = "doubt" not in self._empty_tables
-        self._has_sensors = bool(self._count_rows("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:
             temp_tables.create_table_of_doubted_steps(self.con, self.bindings)
         quick = [b for b in self.bindings if self._has_first_pass(b)]
@@ -200,6 +200,8 @@ class Evaluation:
 
     def judge_rule(self, binding: Binding) -> None:
         """Judge the steps by one rule; `aggregate_pending_steps` makes outcomes of the judged steps."""
+        if self._has_old_steps:
+            self._create_tables_of_steps()
         self._pending.append(binding)
         if binding.rule.kind == "invariant":
             self._judge_invariant(binding)
@@ -299,8 +301,15 @@ class Evaluation:
         self._forget_pending_steps()
 
     def _forget_pending_steps(self) -> None:
-        self._pending, self._n_pending, self._may_be_double = [], 0, False
-        self.con.execute(statement("judging/pending"))  # a new table: DuckDB does not free space of deleted rows
+        """Forget the judged steps, and free their space: at once if there are many, else before the next rule."""
+        are_many = self._n_pending > MOST_PENDING_ROWS
+        self._pending, self._n_pending, self._may_be_double, self._has_old_steps = [], 0, False, True
+        if are_many:
+            self._create_tables_of_steps()
+
+    def _create_tables_of_steps(self) -> None:
+        self.con.execute(statement("judging/pending"))  # new tables: DuckDB does not free space of deleted rows
+        self._has_old_steps = False
 
     def _may_skip_rest(self, n_rows: int) -> bool:
         return n_rows == 0

@@ -346,10 +346,12 @@ def tables_without_rows(con: duckdb.DuckDBPyConnection) -> set[str]:
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
     """Append an Arrow table by column name. Errors: `duckdb.Error` for a column that the table lacks."""
-    if not rows.num_rows and set(rows.column_names) <= column_comments().get(table, {}).keys():
-        return  # most tables of a trace or map are empty, and each INSERT takes two milliseconds
-    with registered(con, {"_incoming": rows}):
-        con.execute(f"INSERT INTO {table} BY NAME SELECT * FROM _incoming")
+    columns = list(column_types().get(table, ())) or con.table(table).columns
+    if unknown := sorted(set(rows.column_names) - set(columns)):
+        raise duckdb.BinderException(f"table {table} has no column {unknown[0]!r}")
+    if rows.num_rows:  # most tables of a trace or map are empty
+        values = ", ".join(f'"{column}"' if column in rows.column_names else "NULL" for column in columns)
+        con.from_arrow(rows).project(values).insert_into(table)
 
 
 @contextmanager
