@@ -14,7 +14,7 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
 * `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
-  Numbers must agree to the written decimals, at least two. `expect: []` means: no row.
+  Numbers must agree to the written decimals, at least two. `expect: []` means: no row. A column that is declared NOT NULL never is.
 """
 
 from __future__ import annotations
@@ -165,6 +165,9 @@ def rows_difference(table: str, expected: Sequence[Row], rows: Sequence[Row]) ->
     if len(expected) != len(rows):
         return f"expected {_count(expected)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
     kinds = declarations.column_types()[table]
+    for row in rows:
+        if empty := [column for column, kind in kinds.items() if kind.endswith(" NOT NULL") and row[column] is None]:
+            return f"{empty[0]} is declared NOT NULL, but is NULL: {_row_text(row)}"
     ordered = [c for c in kinds if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row for row in expected)]
     pairs = zip(_in_order(expected, ordered), _in_order(rows, ordered), strict=True)
     for wanted, row in pairs:
