@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import duckdb
 import pytest
@@ -17,9 +17,7 @@ from drivelint.sql import derivations, store
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-STEP = (
-    "SELECT 'd' AS drive_id, 'e' AS ego_id, range AS t_ns, range::INTEGER AS k, 0 AS seg, 0.0 AS travel_m FROM range(5)"
-)
+STEP = "SELECT 'd' AS drive_id, 'e' AS ego_id, range AS t_ns, range::INTEGER AS k, NULL AS dt_ns, 0 AS seg, 0.0 AS travel_m FROM range(5)"
 SLOW = "SELECT 'd' AS drive_id, sum(hash(a.range, b.range) % 7)::BIGINT AS cell FROM range(1000000) a, range(1000000) b"
 
 
@@ -31,7 +29,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
     made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
-    monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
+    monkeypatch.setattr(derivations, "library_tables", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
 
 
@@ -46,7 +44,7 @@ def test_without_an_occasion_a_table_of_few_states_stays_empty(
 ) -> None:
     """Of many, nothing is run twice: the statement itself finds that there are no rows; here it is made to have some."""
     made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
-    monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
+    monkeypatch.setattr(derivations, "library_tables", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
     monkeypatch.setattr(derive, "MOST_STATES_FOR_EMPTINESS_TEST", most)
     derive.derive(con, ["step"], are_map_tables=False, always_needed_tables=())
@@ -65,9 +63,9 @@ def test_each_runs_after_what_it_reads(
     told: list[str] = []
     fill = derive._fill_table
 
-    def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
+    def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: bool) -> int:
         told.append(step.table)
-        return fill(con, step)
+        return fill(con, step, *types, **old)
 
     monkeypatch.setattr(derive, "_fill_table", telling)
     derive.derive(con, ["clock"], are_map_tables=False, always_needed_tables=())
@@ -84,10 +82,10 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     )
     fill = derive._fill_table
 
-    def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
+    def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: bool) -> int:
         if begins_late and step.table == "_visited_cell":
             time.sleep(0.3)
-        return fill(con, step)
+        return fill(con, step, *types, **old)
 
     monkeypatch.setattr(derive, "_fill_table", late)
     with pytest.raises(DriveLintError, match=r"^queries/library/log/step\.sql: .*'x'"):

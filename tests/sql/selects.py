@@ -19,7 +19,7 @@ from drivelint.sql.statements import statement, statement_texts
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-OTHERS = {"assertions", "library", "macros", "skeletons"}
+OTHERS = {"assertions", "library", "macros", "skeletons", "statement_macros"}
 PARTS = sorted(path.name for path in folder("queries").iterdir() if path.is_dir() and path.name not in OTHERS)
 """The folders of statements that Python runs by name."""
 

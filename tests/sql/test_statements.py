@@ -16,7 +16,7 @@ from tests.sql import selects
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "drivelint"
 IN_ORDER = {
-    "judging": "macros sentences tables pending todo watched grid_group error_of_steps "
+    "judging": "tables pending todo watched content grid_group error_of_steps "
     "error_of_measuring outcome_of_episodes outcome_of_holes outcome_of_references course_of_near_misses stretch course_of_stretches "
     "margin_of_steps blind closed no_cause cause named failed verdict finding margin course",
     "evidence": "every_moment moment around scene danger_space_edge near_lane lane lane_point overtake_record opportunity_record "

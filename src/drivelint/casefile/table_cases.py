@@ -56,12 +56,12 @@ class TableCase(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only
 
 
 class CompleteCase(NamedTuple):
-    """A case with all its rows. `place`: its file, line and name; `given`: its number in the file, and the rows that it gives."""
+    """A case with all its rows. `place`: its file, line and name; `numbered`: its number in the file, and the rows that it gives."""
 
     case: TableCase
     place: str
-    given: NumberedCase
-    expected: list[Row]
+    numbered: NumberedCase
+    expected_rows: list[Row]
 
 
 def cases_file(table: LibraryTable) -> Path:
@@ -88,11 +88,11 @@ def read_table_cases(table: LibraryTable) -> list[CompleteCase]:
         try:
             _refuse_unread_tables(table, case, reads)
             scene = complete_table_scene(reads, case.given_tables, _MAP)
-            expected = rows_of_blocks(table.name, case.expect, "expect")
+            expected_rows = rows_of_blocks(table.name, case.expect, "expect")
         except RuleError as error:
             problems += [f"{place}: {line}" for line in str(error).split("\n")]
         else:
-            complete.append(CompleteCase(case, place, NumberedCase(no, scene, {}), expected))
+            complete.append(CompleteCase(case, place, NumberedCase(no, scene, {}), expected_rows))
     raise_problems(problems)
     return complete
 
@@ -118,7 +118,7 @@ def run_table_cases(table: LibraryTable) -> list[CaseResult]:
     return [
         CaseResult(each.case.name, not message, message and f"{each.place}: {message}")
         for each in cases
-        for message in [rows_difference(table.name, each.expected, found.get(each.given.no, []))]
+        for message in [rows_difference(table.name, each.expected_rows, found.get(each.numbered.no, []))]
     ]
 
 
@@ -131,7 +131,7 @@ class FilledCases:
         self._numbered_columns = [
             c for c in ("drive_id", "environment_id") if c in declarations.column_comments()[table.name]
         ]
-        scene = merge_cases([each.given for each in cases], "drive_id")
+        scene = merge_cases([each.numbered for each in cases], "drive_id")
         self._filled = list(scene)
         try:
             for name, rows in scene.items():
@@ -160,16 +160,16 @@ class FilledCases:
         self._con.execute(";".join(f"DELETE FROM {name}" for name in self._filled))
 
 
-def rows_difference(table: str, expected: Sequence[Row], rows: Sequence[Row]) -> str:
+def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row]) -> str:
     """Return how the rows differ from the expected ones, in one line; '' if they do not."""
-    if len(expected) != len(rows):
-        return f"expected {_count(expected)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
+    if len(expected_rows) != len(rows):
+        return f"expected {_count(expected_rows)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
     kinds = declarations.column_types()[table]
     for row in rows:
         if empty := [column for column, kind in kinds.items() if kind.endswith(" NOT NULL") and row[column] is None]:
             return f"{empty[0]} is declared NOT NULL, but is NULL: {_row_text(row)}"
-    ordered = [c for c in kinds if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row for row in expected)]
-    pairs = zip(_in_order(expected, ordered), _in_order(rows, ordered), strict=True)
+    ordered = [c for c in kinds if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row for row in expected_rows)]
+    pairs = zip(_in_order(expected_rows, ordered), _in_order(rows, ordered), strict=True)
     for wanted, row in pairs:
         for column, value in wanted.items():
             if not _is_same(value, row[column]):
@@ -185,12 +185,12 @@ def _in_order(rows: Sequence[Row], columns: Sequence[str]) -> list[Row]:
     return sorted(rows, key=lambda row: [(row[c] is None, "" if row[c] is None else row[c]) for c in columns])
 
 
-def _is_same(expected: Any, actual: Any) -> bool:
-    if isinstance(expected, list) and isinstance(actual, list):
-        return len(expected) == len(actual) and all(map(_is_same, expected, actual))
-    if isinstance(expected, dict) and isinstance(actual, dict):
-        return all(key in actual and _is_same(value, actual[key]) for key, value in expected.items())
-    return is_same_value(expected, actual, 1)
+def _is_same(expected_value: Any, actual_value: Any) -> bool:
+    if isinstance(expected_value, list) and isinstance(actual_value, list):
+        return len(expected_value) == len(actual_value) and all(map(_is_same, expected_value, actual_value))
+    if isinstance(expected_value, dict) and isinstance(actual_value, dict):
+        return all(key in actual_value and _is_same(value, actual_value[key]) for key, value in expected_value.items())
+    return is_same_value(expected_value, actual_value, 1)
 
 
 def _row_text(row: Mapping[str, Any]) -> str:

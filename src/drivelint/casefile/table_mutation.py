@@ -64,7 +64,7 @@ def _first_difference(
         return "takes too long"
     except duckdb.Error:
         return None
-    found = (rows_difference(table.name, each.expected, rows.get(each.given.no, [])) for each in cases)
+    found = (rows_difference(table.name, each.expected_rows, rows.get(each.numbered.no, [])) for each in cases)
     return next((message for message in found if message), "")
 
 

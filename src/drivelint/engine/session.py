@@ -263,8 +263,7 @@ class JudgingSession:
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new maps are complete: a failure here must not leave half a map
             # an earlier session may have left its map in the database
-            old = set(declarations.tables_of_lifetime("map")) - store.tables_without_rows(self._con)
-            for table in sorted(old):
+            for table in sorted(set(declarations.tables_of_lifetime("map")) - store.tables_without_rows(self._con)):
                 self._con.execute(f"DELETE FROM {table}")
             for id_, environment in sorted(environments.items()):
                 known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
@@ -274,11 +273,11 @@ class JudgingSession:
             derive(self._con, self._tables, are_map_tables=True, always_needed_tables=self._also)
             self._maps = frozenset(environments)
             self._append_maps_to_kept(environments.keys() - self._kept_maps)
-        old = self._tables_to_fill("drive", "part")
+        tables = self._tables_to_fill("drive", "part")
         if not self._has_derived_tables:  # they are created when they are filled
-            old = [table for table in old if table not in derived_tables()]
+            tables = [table for table in tables if table not in derived_tables()]
         self._has_derived_tables = True
-        store.recreate_with_enums(self._con, old, _drive_ids(drives), _actor_ids(drives))
+        store.recreate_with_enums(self._con, tables, _drive_ids(drives), _actor_ids(drives))
         for table in drives[0].trace.tables:
             rows = pa.concat_tables(
                 [_log_rows_with_map(d) if table == "data_log" else d.trace.tables[table] for d in drives]
