@@ -1,6 +1,7 @@
 """`python -m tests.bench [SECTION]...`, from the repository's root: what the product takes, beside its bars.
 
-`before COMMIT` compares the present tree with another commit of this repository, stage by stage.
+`before COMMIT` compares the present tree with another commit of this repository, stage by stage; `demo fleet --against COMMIT` does so
+command by command.
 
 Everything is generated, in a temporary folder. Shared machines are noisy: compare lines of one run, not numbers of two, and look
 at CPU seconds beside the clock's. Nothing here asserts a time; comparisons assert that both sides gave the same answer.
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from tests.bench import before, copying, formats, growth, perception, pictures, profiling, stages
+from tests.bench import before, commands, copying, formats, growth, perception, pictures, profiling, stages
 from tests.bench.commit import UnknownCommitError
 from tests.bench.place import TINY, Place, Sizes
 from tests.bench.rivals import boxes, postgis, reading, temporal
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 SECTIONS: dict[str, Callable[[Place], list[Row]]] = {
     "reference": stages.reference,
     "short": stages.short,
+    "demo": commands.demo,
+    "fleet": commands.fleet,
     "formats": formats.formats,
     "perception": perception.perception,
     "growth": growth.growth,
@@ -55,6 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             runs=options.runs,
             slow_runs=max(1, options.runs * 3 // 5),
             drives=options.short,
+            fleet=options.fleet,
             megabytes=options.megabytes,
             hours=options.hours,
             steps=options.steps,
@@ -90,9 +94,13 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--megabytes", type=int, default=whole.megabytes, help="size of the log of `copy`")
     parser.add_argument("--hours", type=float, default=whole.hours, help="length of the drive of `long`")
     parser.add_argument("--steps", type=int, default=whole.steps, help="steps of the PostGIS loop over time steps")
+    parser.add_argument("--fleet", type=int, default=whole.fleet, help="how many drives of `fleet`")
+    parser.add_argument(
+        "--against", metavar="COMMIT", default="HEAD", help="run the commands of `demo` and `fleet` at this commit, too"
+    )
     parser.add_argument("--tiny", action="store_true", help="everything as small as can be: only to see that it runs")
     options = parser.parse_args(arguments)
-    options.commit = "HEAD"
+    options.commit = options.against
     if "before" in options.sections:
         at = options.sections.index("before") + 1
         if at == len(options.sections):

@@ -18,6 +18,7 @@ class Sizes(NamedTuple):
     reference: Shape = traffic.REFERENCE
     short: Shape = traffic.SHORT
     drives: int = 1000
+    fleet: int = 300
     unit: Shape = Shape(300.0, 20, 50)
     lengths: tuple[int, ...] = (1, 4, 16)
     hours: float = 8.0
@@ -31,6 +32,7 @@ TINY = Sizes(
     reference=Shape(30.0, 10, 8),
     short=Shape(10.0, 10, 6),
     drives=3,
+    fleet=3,
     unit=Shape(5.0, 10, 6),
     lengths=(1, 2),
     hours=10 / 3600,
@@ -42,7 +44,7 @@ TINY = Sizes(
 
 
 class Place:
-    """A temporary folder with the traces and the road of a run. `commit`: what `before` compares with."""
+    """A temporary folder with the traces and the road of a run. `commit`: what `before`, `demo` and `fleet` compare with."""
 
     def __init__(self, home: Path, sizes: Sizes, commit: str = "HEAD") -> None:
         self.home = home
