@@ -272,7 +272,7 @@ def recreate_with_enums(
         can_be_enum = names and not any("\0" in name for name in names)  # SQL text cannot contain NUL
         made = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
         con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
-    recreate_empty(con, tables)
+    _recreate_empty(con, tables, _id_types(max(old, default=0) + 1))
     for no in old:
         con.execute(f"DROP TYPE drive_ids_{no}; DROP TYPE actor_ids_{no}")
 
@@ -282,7 +282,11 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
 
     Deleted rows use memory until a checkpoint, and a database in memory has no checkpoints.
     """
-    types, made = id_types(con), list[str]()
+    _recreate_empty(con, tables, id_types(con))
+
+
+def _recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str], types: Mapping[str, str]) -> None:
+    made: list[str] = []
     for table in tables:
         body = column_lists()[table]
         for column in types.keys() & column_comments()[table].keys() if _has_enums(table) else ():
@@ -307,9 +311,11 @@ def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, 
 def id_types(con: duckdb.DuckDBPyConnection) -> dict[str, str]:
     """Return column -> type of the ids that `recreate_with_enums` created last; without them, an empty dictionary."""
     codes = _enum_numbers(con)
-    if not codes:
-        return {}
-    return {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
+    return _id_types(max(codes)) if codes else {}
+
+
+def _id_types(no: int) -> dict[str, str]:
+    return {"drive_id": f"drive_ids_{no}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{no}")}
 
 
 def _has_enums(table: str) -> bool:
