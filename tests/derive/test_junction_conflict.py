@@ -46,23 +46,6 @@ def test_the_other_crosses_behind_the_ego() -> None:
     assert (row["junction_id"], row["crossing_id"]) == (None, None)
 
 
-def test_the_other_crosses_first_from_the_left() -> None:
-    (row,) = conflicts(east(), across(-15 + 5 * times(12), way=SOUTH))
-    assert row["pet_s"] == pytest.approx(5 - 3.3 / 10 - (3 + 3.3 / 5))
-    assert row["ego_first"] is False
-    assert row["angle_rad"] == pytest.approx(-math.pi / 2)
-
-
-def test_both_in_it_at_once_is_negative() -> None:
-    (row,) = conflicts(east(), across(-28 + 5 * times(12)))
-    assert row["pet_s"] == pytest.approx(5.6 - 3.3 / 5 - (5 + 3.3 / 10))
-
-
-def test_more_than_ten_seconds_apart_is_no_conflict() -> None:
-    assert conflicts(east(end=20), across(-40 + 5 * (times(20) - 6.4), end=20))
-    assert not conflicts(east(end=20), across(-40 + 5 * (times(20) - 8.5), end=20))
-
-
 @pytest.mark.parametrize(("degrees", "n"), [(15, 0), (25, 1), (155, 1), (180, 1)])
 def test_ways_that_run_along_each_other_do_not_cross(degrees: float, n: int) -> None:
     """Oncoming in the ego's own lane, some seconds later, is a conflict at 180 degrees."""
@@ -113,13 +96,6 @@ def test_parked_across_the_way_is_no_partner_but_a_walker_who_pauses_is() -> Non
     assert row["actor_class"] == "pedestrian"
 
 
-def test_contact_with_what_stands_all_the_while_is_not_a_conflict() -> None:
-    t = times(12)
-    assert not conflicts(east(), standing("parked", NORTH, t, 0.0, 0.0))
-    creeping = moving("parked", NORTH, t, 0.6 * (t - 5), 0.0)
-    assert len(conflicts(east(), creeping)) == 1
-
-
 def test_a_walker_goes_where_they_go_whichever_way_they_are_turned() -> None:
     t = times(12)
     walker = moving("w", NORTH, t, -8 + 1.4 * t, 0.0, length=0.5, width=0.5, kind="pedestrian")
@@ -151,53 +127,12 @@ def test_out_of_the_egos_way_and_back_into_it_are_two_places() -> None:
     assert found[0]["angle_rad"] > 0.35 > -0.35 > found[1]["angle_rad"]
 
 
-@pytest.mark.ci
-def test_who_has_no_position_heading_or_size_is_left_to_passage_conflict() -> None:
-    other = across(-40 + 5 * times(12))
-    there = np.abs(other.y) < 8
-    assert not conflicts(east(), other.lost(there))
-    assert not conflicts(east(), Actor(**{**other.__dict__, "length": None}))
-    assert not conflicts(east(), Actor(**{**other.__dict__, "yaw": np.full(other.t_s.shape, np.nan)}))
-
-
 def test_a_log_of_few_samples_misses_nobody() -> None:
     """At 1 Hz and 30 m/s every car jumps over six car lengths."""
     t = times(12, period=1.0)
     ego = moving("ego", line(), t, -165 + 30 * t, 0.0)
     assert len(conflicts(ego, moving("other", NORTH, t, -165 + 30 * (t - 2), 0.0))) == 1
     assert not conflicts(ego, moving("other", line(math.pi / 2, 250.0), t, -165 + 30 * (t - 2), 0.0))
-
-
-@pytest.mark.parametrize(("braking", "seen"), [(3.0, 3.0), (0.0, 0.0)])
-def test_how_hard_the_other_braked_before_it_came(braking: float, seen: float) -> None:
-    """It comes at 12 m/s and brakes from 4 s to 6 s."""
-    t = times(14)
-    v = 12 - braking * np.clip(t - 4, 0, 2)
-    s = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * 0.1)])
-    (row,) = conflicts(east(end=14), across(s - 90, end=14))
-    assert row["decel_mps2"] == pytest.approx(seen, abs=0.01)
-
-
-@pytest.mark.ci
-def test_braking_is_unknown_where_it_was_not_seen_whole() -> None:
-    t = times(14)
-    other = across(-70 + 10 * t, end=14)
-    (row,) = conflicts(east(end=14), other.keep((t < 3) | (t > 4)))
-    assert row["decel_mps2"] is None
-    (row,) = conflicts(east(end=14), other.keep(t > 3))
-    assert row["decel_mps2"] is None
-    (row,) = conflicts(east(end=14), other.keep(t > 0.5))
-    assert row["decel_mps2"] is not None
-
-
-def test_braking_after_its_entry_or_long_before_is_not_the_egos_doing() -> None:
-    t = times(14)
-    early = np.where(t < 0.5, 12 - 10 * t, 7.0)  # from 12 to 7 m/s before t = 0.5; the ego enters at 4.7
-    s = np.concatenate([[0.0], np.cumsum((early[1:] + early[:-1]) / 2 * 0.1)])
-    (row,) = conflicts(east(end=14), across(s - 60, end=14))
-    assert row["decel_mps2"] == pytest.approx(0, abs=0.01)
-    (row,) = conflicts(east(s0=-120.0, end=14), across(-10 + 5 * t, end=14))
-    assert row["decel_mps2"] is None  # it was through before the four seconds began
 
 
 def test_every_ego_and_every_drive_for_itself() -> None:

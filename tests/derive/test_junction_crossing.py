@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.derive.junction_scenes import cross, crosswalk, lit, signal
+from tests.derive.junction_scenes import cross, crosswalk, signal
 from tests.scenes import Actor, Road, derived, drive, moving, rows, seconds, swing, times
 
 if TYPE_CHECKING:
@@ -58,24 +58,6 @@ def test_on_it_half_by_half(hand: str) -> None:
     assert seconds(found, "t_to_ns") == [pytest.approx(5.0, abs=0.1), pytest.approx(7.9, abs=0.1)]
 
 
-def test_cars_beside_it_and_people_beside_it_are_not_on_it() -> None:
-    way = zebra()
-    t = times(14)
-    others = [walker("beside", t, -1.75, x=X - 0.5), walker("kerb", t, -4.5), walker("car", t, -1.75, kind="car")]
-    con = derived(drive([going(way), *others], way.environment), tables=["_crossing_occupancy"])
-    assert not rows(con, "FROM _crossing_occupancy")
-
-
-def test_without_a_class_it_may_be_somebody_on_foot_and_a_hole_parts_two_stretches() -> None:
-    way = zebra()
-    t = times(14)
-    some = walker("w", t, -1.75, kind=None)
-    con = derived(drive([going(way), some.keep((t < 5) | (t > 6))], way.environment), tables=["_crossing_occupancy"])
-    found = rows(con, "FROM _crossing_occupancy ORDER BY t_from_ns")
-    assert seconds(found, "t_from_ns") == [0.0, pytest.approx(6.1)]
-    assert seconds(found, "t_to_ns") == [pytest.approx(4.9), pytest.approx(14.0)]
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(("said", "kind"), [("zebra", "zebra"), ("signalised", "signalled"), ("", None)])
 def test_going_over_an_empty_one(hand: str, said: str, kind: str | None) -> None:
@@ -86,12 +68,6 @@ def test_going_over_an_empty_one(hand: str, said: str, kind: str | None) -> None
     assert seconds([row], "t_out_ns") == [pytest.approx(10.7)]
     assert (row["on_id"], row["t_on_ns"], row["waiting_id"], row["known"]) == (None, None, None, True)
     assert (row["signal_id"], row["state"], row["stood_before"]) == (None, None, False)
-
-
-def test_not_reached_no_row() -> None:
-    way = zebra()
-    assert not passages(drive([going(way, end=9.0)], way.environment))
-    assert not passages(drive([going(way, s0=110.0, end=9.0)], way.environment))
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -167,33 +143,6 @@ def test_the_other_half_counts_while_its_middle_is_not_past(hand: str, out: floa
     assert (row["on_id"], row["coming_known"]) == (on, on is None)
 
 
-@pytest.mark.ci
-def test_who_waits_between_the_halves_or_has_no_class_or_is_a_car() -> None:
-    way = zebra()
-    t = times(18)
-    to = np.interp(t, (0, 9.7, 10.5, 14.5, 18), (3.4, 0.6, 0.1, -0.1, -3.4))
-    for until, comes in ((12.9, "w"), (14.1, None)):  # not on it in the middle of the road, as on an island
-        waits = walker("w", t, to).keep((t < 10.5) | (t > until))
-        (row,) = passages(drive([going(way, end=18), waits], way.environment))
-        assert (row["coming_id"], row["coming_known"]) == (comes, True)
-    over = -(-1.0 + 1.2 * (t - 9.7))
-    some = passages(drive([going(way, end=18), walker("w", t, over, kind=None)], way.environment))
-    assert (some[0]["coming_id"], some[0]["coming_known"]) == (None, False)
-    car = passages(drive([going(way, end=18), walker("w", t, over, kind="car")], way.environment))
-    assert (car[0]["coming_id"], car[0]["coming_known"]) == (None, True)
-
-
-def test_who_was_off_it_before_the_ego_came_is_not_on_it_and_the_first_counts() -> None:
-    way = zebra()
-    t = times(14)
-    gone = walker("a", t, np.where(t < 9.5, -3.0, -4.5))
-    second, first = walker("b", t, np.where(t > 9, -3.0, -4.5)), walker("c", t, np.where(t > 8, -3.0, -4.5))
-    (row,) = passages(drive([going(way), gone], way.environment))
-    assert row["on_id"] is None
-    (row,) = passages(drive([going(way), second, first], way.environment))
-    assert row["on_id"] == "c"
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
     ("y", "x", "waits"), [(4.5, X + 1.5, True), (5.4, X + 1.5, True), (5.6, X + 1.5, False), (4.5, X - 1.5, True),
@@ -203,21 +152,6 @@ def test_somebody_waits_at_its_end(hand: str, y: float, x: float, waits: bool) -
     way = zebra(hand)
     (row,) = passages(drive([going(way), walker("w", times(14), y * SIDE[hand], x)], way.environment))
     assert row["waiting_id"] == ("w" if waits else None)
-
-
-@pytest.mark.ci
-def test_who_walks_by_or_came_late_does_not_wait() -> None:
-    way = zebra()
-    t = times(14)
-    by = walker("w", t, -4.5 - 0.1 * np.sin(8 * t))
-    (row,) = passages(drive([going(way), by], way.environment))
-    assert row["waiting_id"] is None
-    late = walker("w", t, np.where(t < 8.5, -8.0, -4.5))
-    (row,) = passages(drive([going(way), late], way.environment))
-    assert row["waiting_id"] is None
-    early = walker("w", t, np.where(t < 7.5, -8.0, -4.5))
-    (row,) = passages(drive([going(way), early], way.environment))
-    assert row["waiting_id"] == "w"
 
 
 @pytest.mark.ci
@@ -242,53 +176,6 @@ def test_somebody_who_cannot_be_placed() -> None:
     assert row["known"] is True
     (row,) = passages(drive([going(way), walker("w", t, -1.75, kind=None)], way.environment))
     assert (row["known"], row["on_id"]) == (False, None)
-
-
-@pytest.mark.ci
-def test_a_track_that_begins_or_ends_nearby() -> None:
-    way = zebra()
-    t = times(14)
-    for kept, known in ((t > 9, False), (t < 10, False), (t > 5, True), (t < 12, True)):
-        (row,) = passages(drive([going(way), walker("w", t, -6.0).keep(kept)], way.environment))
-        assert row["known"] is known, kept.sum()
-    (row,) = passages(drive([going(way), walker("w", t, -60.0).keep(t > 9)], way.environment))
-    assert row["known"] is True
-
-
-@pytest.mark.ci
-def test_a_log_that_begins_or_ends_on_it_and_holes() -> None:
-    way = zebra()
-    (row,) = passages(drive([going(way, s0=99.0, end=5.0)], way.environment))
-    assert (row["t_in_ns"], row["known"]) == (None, False)
-    assert row["t_out_ns"] is not None
-    (row,) = passages(drive([going(way, end=10.0)], way.environment))
-    assert (row["t_out_ns"], row["known"]) == (None, False)
-    assert row["t_in_ns"] is not None
-    ego = going(way, end=16.0)
-    one, two = passages(drive([ego.keep((ego.t_s < 9.9) | (ego.t_s > 10.2))], way.environment))
-    assert (one["t_out_ns"], two["t_in_ns"], one["known"], two["known"]) == (None, None, False, False)
-    (over,) = passages(drive([ego.keep((ego.t_s < 8) | (ego.t_s > 13))], way.environment))
-    assert (over["t_in_ns"], over["t_out_ns"], over["known"]) == (None, None, False)
-    (row,) = passages(drive([ego.keep((ego.t_s < 8) | (ego.t_s > 8.5))], way.environment))
-    assert (row["t_in_ns"] is not None, row["known"]) == (True, False)
-    (row,) = passages(drive([going(way, s0=84.0, end=5.0)], way.environment))
-    assert row["known"] is False  # the log begins 1.7 s before
-
-
-@pytest.mark.parametrize(("at", "stood"), [(2.0, True), (7.0, False)])
-def test_it_stood_before_it(at: float, stood: bool) -> None:
-    way = zebra()
-    t = times(30)
-    s = np.interp(t, [0, 5, 10, 30], [100 - 42.4 - at, 100 - 2.4 - at, 100 - 2.4 - at, 200])
-    (row,) = passages(drive([moving("ego", way, t, s, way.own)], way.environment))
-    assert row["stood_before"] is stood
-
-
-def test_trembling_at_its_edge_is_one_passage() -> None:
-    way = zebra()
-    t = times(30)
-    s = np.interp(t, [0, 5, 15, 30], [100 - 42.4, 100 - 2.4, 100 - 2.4, 200]) + 0.02 * np.sin(5 * t)
-    assert len(passages(drive([moving("ego", way, t, s, way.own)], way.environment))) == 1
 
 
 def backing(way: Road, *points: tuple[float, float], end: float = 40.0) -> Actor:
@@ -319,24 +206,6 @@ def test_reversing_over_it_and_going_over_it_again_is_three_passages() -> None:
     way = zebra()
     ego = backing(way, (0, 22.4), (11, 110.4), (15, 110.4), (26, 88.4), (28, 88.4), (34, 130.4), (40, 130.4))
     assert len(passages(drive([ego], way.environment))) == 3
-
-
-def test_rolling_back_a_hand_s_breadth_past_it_is_no_passage() -> None:
-    """Its rear is 0.3 m past it, and back over its edge by as much."""
-    way = zebra()
-    ego = backing(way, (0, 17.7), (11, 105.7), (15, 105.7), (16, 105.1), (18, 105.1), (30, 200))
-    assert len(passages(drive([ego], way.environment))) == 1
-
-
-@pytest.mark.ci
-def test_the_light_for_vehicles() -> None:
-    way = zebra(said="", lights=(("1", signal("light", 98.0, "1000001")),))
-    (row,) = passages(lit(drive([going(way)], way.environment), "light", (0.0, "green"), (9.6, "amber"), (10.0, "red")))
-    assert (row["kind"], row["signal_id"], row["state"]) == ("signalled", "light", "amber")
-    for code, s in (("206", 98.0), ("1000001", 80.0), ("1000001", 140.0)):
-        way = zebra(said="", lights=(("1", signal("other", s, code)),))
-        (row,) = passages(drive([going(way)], way.environment))
-        assert (row["kind"], row["signal_id"]) == (None, None)
 
 
 def test_a_light_past_the_junction_is_not_that_of_a_crossing_at_its_beginning() -> None:

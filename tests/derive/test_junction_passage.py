@@ -7,7 +7,6 @@ from itertools import permutations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow as pa
 import pytest
 
 from drivelint.arrays import replace_columns
@@ -110,18 +109,6 @@ def test_first_and_last_step_are_exact() -> None:
     assert row["t_first_ns"] == min(r["t_ns"] for r in steps if r["x_m"] >= -R)
 
 
-@pytest.mark.ci
-def test_a_log_that_begins_or_ends_inside() -> None:
-    way = cross()["ws"]
-    (row,) = passages(going(way, s0=190.0, end=8.0), way=way)
-    assert (row["t_in_ns"], row["turn"], row["across"]) == (None, None, None)
-    assert row["t_out_ns"] is not None
-    (row,) = passages(going(way, end=9.0), way=way)
-    assert row["t_in_ns"] is not None
-    assert (row["t_out_ns"], row["turn"], row["turn_rad"]) == (None, None, None)
-    assert not passages(going(way, end=7.0), way=way)
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize("name", ["we", "ws", "wn"])
 def test_the_turn_is_known_as_soon_as_its_centre_is_on_the_lane_after_it(hand: str, name: str) -> None:
@@ -159,39 +146,6 @@ def test_straight_on_into_a_junction_behind_a_queue(hand: str, rolls: bool) -> N
     assert standing_in_it(hand, "wn" if hand == "rht" else "ws", rolls=rolls, end=27.2) == "unknown"
     # it stands there still as the log ends: it may be about to turn
     assert standing_in_it(hand, "we", rolls=rolls, end=21.0) == "unknown"
-
-
-def test_a_hole_inside_makes_two_halves() -> None:
-    way = cross()["we"]
-    ego = going(way)
-    (one, two) = passages(ego.keep((ego.t_s < 9) | (ego.t_s > 10)), way=way)
-    assert one["t_in_ns"] is not None
-    assert one["t_out_ns"] is None
-    assert two["t_in_ns"] is None
-    assert two["t_out_ns"] is not None
-    assert (one["occurrence"], two["occurrence"]) == (0, 1)
-
-
-def test_a_hole_over_the_way_in_leaves_it_unknown() -> None:
-    way = cross()["we"]
-    ego = going(way)
-    (row,) = passages(ego.keep((ego.t_s < 7.3) | (ego.t_s > 8.2)), way=way)
-    assert row["t_in_ns"] is None
-    assert row["t_out_ns"] is not None
-
-
-def test_front_in_and_back_out_again_counts_from_the_last_time() -> None:
-    """It stops with the front 1 m over, rolls back 3 m, waits and goes."""
-    way = cross()["we"]
-    t = times(30)
-    s = np.interp(t, [0, 5, 8, 10, 15, 30], [ARM - 30, ARM - 1.4, ARM - 1.4, ARM - 4.4, ARM - 4.4, ARM + 90])
-    (row,) = passages(moving("ego", way, t, s, way.own), way=way)
-    assert row["t_in_ns"] / 1e9 == pytest.approx(15.35, abs=0.15)
-
-
-def test_no_junction_no_row() -> None:
-    way = cross()["we"]
-    assert not passages(going(way, s0=10.0, end=10.0), way=way)
 
 
 SIGNS = [("206", "stop", True), ("205", "give_way", True), ("1000001", "traffic_light", False), ("274", "none", False)]
@@ -252,29 +206,11 @@ def test_a_signal_on_the_connecting_lane_holds_for_who_takes_it() -> None:
     assert (left["control"], right["control"]) == ("traffic_light", "give_way")
 
 
-def test_a_signal_past_the_junction_is_not_its_own() -> None:
-    way = cross("rht", (("2", signal("next", 10.0, "206")),))["we"]
-    (row,) = passages(going(way), way=way)
-    assert (row["control"], row["minor"]) == ("none", False)
-
-
 def test_each_ego_by_its_own_way() -> None:
     ways = cross()
     other = going(ways["ns"], name="other", s0=90.0)
     found = passages(going(ways["wn"]), other, way=ways["we"], egos=("ego", "other"))
     assert [(r["ego_id"], r["turn"]) for r in found] == [("ego", "left"), ("other", "straight")]
-
-
-@pytest.mark.ci
-def test_with_the_handedness_unknown_nobody_knows_which_turn_crosses_the_traffic() -> None:
-    way = cross()["wn"]
-    table = way.environment.tables["environment"]
-    said = table.set_column(
-        table.schema.get_field_index("handedness_source"), "handedness_source", pa.array(["default"], pa.string())
-    )
-    guessed = replace(way.environment, tables={**way.environment.tables, "environment": said})
-    (row,) = passages(going(way), way=replace(way, environment=guessed))
-    assert (row["turn"], row["across"]) == ("left", None)
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])

@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.reasons.reason_text import sentence
 from tests.derive.junction_scenes import ARM, R, cross, star
-from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
+from tests.scenes import Actor, Road, derived, drive, moving, rows, times
 
 if TYPE_CHECKING:
     from tests.scenes import Row
@@ -109,21 +109,6 @@ def test_who_brakes_on_the_bent_road_ahead() -> None:
     assert {relation for relation, row in found.items() if row["braked_id"]} == {"from_right", "oncoming"}
 
 
-def test_only_those_before_whom_the_ego_went() -> None:
-    ways = cross()
-    found = answers(going(ways["wn"], s0=92.0), going(ways["ew"], s0=120.0, name="first"), way=ways["we"])
-    assert not seen(found)
-
-
-def test_the_one_with_the_least_pet() -> None:
-    ways = cross()
-    near, far = going(ways["ew"], s0=98.0, name="z"), going(ways["ew"], s0=80.0, name="a")
-    both = answers(going(ways["wn"]), near, far, way=ways["we"])["oncoming"]
-    alone = answers(going(ways["wn"]), near, way=ways["we"])["oncoming"]
-    assert both == alone
-    assert both["object_id"] == "z"
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(("s0", "pet_s"), [(110.0, (0.0, 1.0)), (103.0, None), (92.0, (2.0, 4.0))])
 def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_perhaps_follows_it(
@@ -139,28 +124,6 @@ def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_perhaps
     else:
         assert row["object_id"] == "other"
         assert pet_s[0] < row["pet_s"] < pet_s[1]
-
-
-def test_one_that_turns_in_behind_hides_nobody_who_comes_across() -> None:
-    ways = cross()
-    behind = going(ways["en"], s0=103.0, name="behind")
-    across = going(ways["ew"], s0=108.0, name="across")
-    row = answers(going(ways["wn"]), behind, across, way=ways["we"])["oncoming"]
-    assert row["object_id"] == "across"
-    assert 0 < row["pet_s"] < 2
-    late = going(ways["ew"], s0=80.0, name="across")
-    row = answers(going(ways["wn"]), behind, late, way=ways["we"])["oncoming"]
-    assert (row["object_id"], row["pet_s"]) == (None, None)
-
-
-def test_how_hard_the_other_had_to_brake() -> None:
-    ways = cross()
-    t = times(24)
-    v = 12 - 3 * np.clip(t - 7, 0, 2)
-    s = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * 0.1)])
-    other = moving("other", ways["ew"], t, s + 60, ways["ew"].own)
-    row = answers(going(ways["wn"]), other, way=ways["we"])["oncoming"]
-    assert row["decel_mps2"] == pytest.approx(3.0, abs=0.01)
 
 
 def test_a_cyclist_along_the_egos_road_goes_on_while_the_ego_turns() -> None:
@@ -205,18 +168,6 @@ def walker(y: np.ndarray | float, x: np.ndarray | float, t: np.ndarray, **more: 
     return Actor("w", t, x, y, np.arctan2(vy, vx), vx, vy, **given)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("past", "counts"), [(3.0, True), (8.0, True), (30.0, False)])
-def test_somebody_on_foot_over_the_mouth_of_the_road_turned_into(past: float, counts: bool) -> None:
-    """The ego turns left into road 4 and goes north; the walker goes east over it, `past` metres beyond the junction."""
-    ways = cross()
-    t = times(24)
-    x = -10 + 1.4 * (t - 9.5)
-    found = answers(going(ways["wn"]), walker(R + past, x, t), way=ways["we"])
-    assert seen(found) == ({"pedestrian": "w"} if counts else {})
-    if counts:
-        assert found["pedestrian"]["pet_s"] > 0
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(("before", "counts"), [(3.0, True), (8.0, True), (30.0, False)])
 def test_somebody_on_foot_over_the_mouth_of_the_road_turned_out_of(hand: str, before: float, counts: bool) -> None:
@@ -229,18 +180,6 @@ def test_somebody_on_foot_over_the_mouth_of_the_road_turned_out_of(hand: str, be
     assert seen(found) == ({"pedestrian": "w"} if counts else {})
     if counts:
         assert 0 < found["pedestrian"]["pet_s"] < 2
-
-
-def test_who_is_still_walking_there_counts_though_they_were_first_but_not_who_is_through() -> None:
-    ways = cross()
-    t = times(24)
-    ego_there = (ARM + 23.56 + 3 - 120) / 8  # its centre 3 m past the junction, in x = 1.75
-    still = walker(R + 3.0, 1.75 + 1.4 * (t - ego_there) + 0.4, t)
-    found = answers(going(ways["wn"]), still, way=ways["we"])
-    assert seen(found) == {"pedestrian": "w"}
-    assert found["pedestrian"]["pet_s"] < 0
-    through = walker(R + 3.0, 1.75 + 1.4 * (t - ego_there) + 4, t)
-    assert not seen(answers(going(ways["wn"]), through, way=ways["we"]))
 
 
 @pytest.mark.parametrize(
@@ -288,62 +227,6 @@ def test_a_lower_pet_that_was_seen_is_given_with_the_doubt() -> None:
     assert row["reason"] == "actor ghost is no longer recorded"
 
 
-@pytest.mark.parametrize("missing", ["length", "yaw"])
-def test_without_size_or_heading_nobody_can_be_compared(missing: str) -> None:
-    ways = cross()
-    other = going(ways["ew"], s0=92.0, name="o")
-    bare = Actor(**{**other.__dict__, missing: None if missing == "length" else np.full(other.t_s.shape, np.nan)})
-    row = answers(going(ways["wn"]), bare, way=ways["we"])["oncoming"]
-    assert row["pet_s"] is None
-    assert row["reason"] == ("actor o has no size" if missing == "length" else "actor o has no heading")
-
-
-def test_who_was_too_far_away_to_come_is_in_no_doubt() -> None:
-    """Two seconds without a position, and 150 m away before and after."""
-    ways = cross()
-    t = times(24)
-    parked = standing("p", ways["ew"], t, 50.0, 8.0)
-    found = answers(going(ways["wn"]), parked.lost((t > 9) & (t < 11)), way=ways["we"])
-    assert found["oncoming"]["pet_s"] == math.inf
-    near = standing("p", ways["ew"], t, 150.0, 8.0)
-    found = answers(going(ways["wn"]), near.lost((t > 9) & (t < 11)), way=ways["we"])
-    assert found["oncoming"]["pet_s"] is None
-
-
-@pytest.mark.ci
-def test_a_track_that_begins_or_ends_near_while_the_ego_passes() -> None:
-    ways = cross()
-    t = times(24)
-    near = standing("p", ways["ew"], t, ARM + 20, 12.0)
-    for kept, reason in ((t > 10, "is not yet recorded"), (t < 10, "is no longer recorded")):
-        found = answers(going(ways["wn"]), near.keep(kept), way=ways["we"])
-        assert found["oncoming"]["reason"] == f"actor p {reason}"
-        assert found["pedestrian"]["reason"] is None
-    far = standing("p", ways["ew"], t, 100.0, 12.0)
-    assert answers(going(ways["wn"]), far.keep(t > 10), way=ways["we"])["oncoming"]["reason"] is None
-    assert answers(going(ways["wn"]), near.keep(t > 2), way=ways["we"])["oncoming"]["reason"] is None
-
-
-@pytest.mark.ci
-def test_a_track_that_ends_on_its_way_to_the_junction_or_begins_on_its_way_from_there() -> None:
-    """The ego is in the junction from 7.8 to 11.4 s; they come 40 m and more from its middle."""
-    ways = cross()
-    t = times(24)
-    comes = moving("p", ways["ew"], t, 80 + 12 * t, ways["ew"].own)  # 48 m away at 6 s, 78 m at 3.5 s: there at 10 s
-    stays = standing("q", ways["ew"], t, 122.0, ways["ew"].own)
-    assert answers(going(ways["wn"]), stays.keep(t < 3.5), way=ways["we"])["oncoming"]["reason"] is None
-    for kept, doubt in ((t < 6, True), (t < 3.5, True)):
-        reason = answers(going(ways["wn"]), comes.keep(kept), way=ways["we"])["oncoming"]["reason"]
-        assert reason == ("actor p is no longer recorded" if doubt else None)
-    # 52 m beyond it at 13 s, it was there 4.3 s before
-    leaves = moving("p", ways["ew"], t, 96 + 12 * t, ways["ew"].own)
-    for kept, doubt in ((t > 13, True), (t > 2, False)):
-        found = answers(going(ways["wn"]), leaves.keep(kept), way=ways["we"])["oncoming"]
-        assert (found["reason"] == "actor p is not yet recorded") is doubt
-    backwards = moving("p", ways["we"], t, 330 + 2 * t, ways["we"].own)  # far past it, and further away
-    assert answers(going(ways["wn"]), backwards.keep(t < 9), way=ways["we"])["oncoming"]["reason"] is None
-
-
 @pytest.mark.ci
 def test_the_log_must_go_on_for_a_while() -> None:
     """The rear leaves the junction at 11.4 s."""
@@ -358,14 +241,6 @@ def test_the_log_must_go_on_for_a_while() -> None:
     ego = going(ways["wn"])
     row = answers(ego.keep((ego.t_s < 12.5) | (ego.t_s > 13.5)), way=ways["we"])["oncoming"]
     assert (row["pet_s"], row["reason"]) == (None, "there is a hole in the log soon after the junction")
-
-
-@pytest.mark.parametrize(("metres", "known"), [(60.0, True), (40.0, False)])
-def test_a_sensor_must_still_see_the_junction(metres: float, known: bool) -> None:
-    """Four seconds after leaving the ego is 34 m away."""
-    ways = cross()
-    row = answers(going(ways["wn"]), way=ways["we"], sensor_range_m=metres)["oncoming"]
-    assert row["pet_s"] == (math.inf if known else None)
 
 
 def test_every_ego_and_drive_for_itself() -> None:

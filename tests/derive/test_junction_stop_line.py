@@ -72,79 +72,6 @@ def test_the_other_direction_and_the_other_lane_have_no_line() -> None:
     assert not crossings(drive([going(ways["sn"])], ways["sn"].environment))
 
 
-def test_before_the_line_is_not_over_it() -> None:
-    way = lined()
-    assert not crossings(drive([going(way, end=7.0)], way.environment))
-
-
-def test_a_log_that_begins_past_it_does_not_cross_it() -> None:
-    way = lined()
-    assert not crossings(drive([going(way, s0=LINE - 2.0)], way.environment))
-
-
-@pytest.mark.parametrize(("gap", "n"), [((6.5, 7.4), 1), ((2.0, 11.0), 1)])
-def test_a_hole_over_the_line_hides_the_moment_not_the_fact(gap: tuple[float, float], n: int) -> None:
-    way = lined()
-    ego = going(way, end=16.0)
-    found = crossings(drive([ego.keep((ego.t_s < gap[0]) | (ego.t_s > gap[1]))], way.environment))
-    assert [row["begin_seen"] for row in found] == [False] * n
-    assert found[0]["t_ns"] / 1e9 == pytest.approx(gap[1] + 0.1)
-
-
-@pytest.mark.parametrize(("at", "stand", "stood"), [(0.5, 4.0, 4.0), (0.5, 1.0, 1.0), (2.0, 4.0, 0.0)])
-def test_standing_before_it(at: float, stand: float, stood: float) -> None:
-    way = lined()
-    (row,) = crossings(drive([stopping(way, at, stand)], way.environment))
-    assert row["slowest_mps"] == pytest.approx(0, abs=0.05)
-    assert row["slowest_front_m"] == pytest.approx(at, abs=0.02)
-    assert row["stood_s"] == pytest.approx(stood, abs=0.21)
-
-
-def test_standing_too_far_away_is_not_seen_near_it() -> None:
-    way = lined()
-    (row,) = crossings(drive([stopping(way, 4.0, 4.0)], way.environment))
-    assert row["slowest_mps"] > 1.0
-    assert row["stood_s"] == 0.0
-
-
-def test_rolling_over_it_slowly_is_not_standing() -> None:
-    way = lined()
-    t = times(40)
-    s = LINE - 2.4 - 10 + 0.5 * t
-    (row,) = crossings(drive([moving("ego", way, t, s, way.own)], way.environment))
-    assert row["slowest_mps"] == pytest.approx(0.5)
-    assert row["stood_s"] == 0.0
-
-
-def test_with_the_speed_unknown_before_the_line_nobody_knows_how_slow_it_was() -> None:
-    way = lined()
-    ego = stopping(way, 0.5, 4.0)
-    hidden = (ego.t_s > 5) & (ego.t_s < 11)
-    blind = Actor(**{**ego.__dict__, "vx": np.where(hidden, np.nan, ego.vx)})
-    (row,) = crossings(drive([blind], way.environment))
-    assert (row["slowest_mps"], row["slowest_front_m"], row["stood_s"]) == (None, None, None)
-
-
-def test_too_fast_for_a_step_in_the_last_metres() -> None:
-    """40 m/s at 10 Hz: four metres a step."""
-    way = lined()
-    t = times(5)
-    (row,) = crossings(drive([moving("ego", way, t, 14.0 + 40 * t, way.own)], way.environment))
-    assert row["slowest_mps"] == pytest.approx(40)
-    assert row["slowest_front_m"] > 3
-
-
-def test_trembling_on_the_line_is_one_crossing_and_backing_off_two() -> None:
-    way = lined()
-    t = times(30)
-    wobble = 0.02 * np.sin(5 * t)
-    s = np.interp(t, [0, 5, 15, 30], [LINE - 42.4, LINE - 2.4, LINE - 2.4, LINE + 60]) + wobble
-    assert len(crossings(drive([moving("ego", way, t, s, way.own)], way.environment))) == 1
-    s = np.interp(t, [0, 5, 10, 12, 30], [LINE - 42.4, LINE - 1.4, LINE - 3.4, LINE - 3.4, LINE + 60])
-    found = crossings(drive([moving("ego", way, t, s, way.own)], way.environment))
-    assert [row["occurrence"] for row in found] == [0, 1]
-
-
 LIGHT = [(0.0, "green"), (4.0, "amber"), (7.0, "red"), (20.0, "red_amber"), (22.0, "green")]
 
 
@@ -167,36 +94,6 @@ def test_what_the_light_showed(
     assert seconds([row], "t_state_ns") == [since]
     assert row["amber_front_m"] == (None if onset is None else pytest.approx(onset, abs=0.05))
     assert row["amber_speed_mps"] == (None if onset is None else pytest.approx(8))
-
-
-def test_an_amber_whose_onset_was_not_seen() -> None:
-    way = lined("1000001")
-    (row,) = crossings(lit(drive([going(way)], way.environment), "sign", (5.0, "amber"), (9.0, "red")))
-    assert (row["state"], row["state_before"], row["t_state_ns"], row["amber_front_m"]) == ("amber", None, None, None)
-
-
-@pytest.mark.parametrize(
-    ("states", "state"),
-    [
-        (((7.5, "red"),), None),  # the first word comes after the ego
-        (((0.0, "red"), (5.0, None)), None),
-        (((0.0, "red"), (5.0, None), (7.0, "green")), "green"),
-        (tuple((0.1 * k, "red") for k in range(200)), "red"),
-        (tuple((0.1 * k, "red") for k in range(60)), None),  # recorded ten times a second, and then no more
-        (((0.0, "red"), (0.0, "green")), None),
-        (
-            ((0.0, "red"), (23.0, "red_amber"), (24.0, "green")),
-            "red",
-        ),  # said at its changes, two of them a second apart
-        (((0.0, "red"), (0.1, "red"), (23.0, "red_amber"), (24.0, "green")), None),
-    ],
-)
-def test_a_state_that_nobody_knows(states: tuple[tuple[float, str | None], ...], state: str | None) -> None:
-    way = lined("1000001")
-    (row,) = crossings(lit(drive([going(way)], way.environment), "sign", *states))
-    assert row["state"] == state
-    if state is None:
-        assert (row["t_state_ns"], row["amber_front_m"]) == (None, None)
 
 
 def test_of_two_lights_the_recorded_one() -> None:
@@ -223,14 +120,6 @@ def test_a_light_without_a_line_is_its_own() -> None:
     (row,) = crossings(drive([going(way)], way.environment))
     assert row["t_ns"] / 1e9 == pytest.approx((ARM - 122.4) / 8, abs=0.1)
     assert row["stop_line_id"] == "far"
-
-
-def test_a_signal_of_somewhere_else_does_not_govern_it() -> None:
-    (row,) = crossings(drive([going(lined("206", at=148.0))], lined("206", at=148.0).environment))
-    assert row["control"] is None
-    far = cross("rht", (("1", stop_line("line", LINE, -1.75)), ("2", signal("next", 2.0, "206"))))["we"]
-    (row,) = crossings(drive([going(far)], far.environment))
-    assert row["control"] is None
 
 
 def test_each_ego_and_drive_with_its_own_light() -> None:
