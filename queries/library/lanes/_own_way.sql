@@ -6,7 +6,7 @@ CREATE TABLE _own_way (
     ego_id VARCHAR NOT NULL,          -- the ego
     seg INTEGER NOT NULL,             -- see step: a new piece of the path begins after a hole
     k INTEGER NOT NULL,               -- number of the segment along the piece, from 0
-    t_from_ns BIGINT,                 -- time at which the ego's centre was at the segment's start; NULL: the segment is extrapolated
+    t_from_ns BIGINT,                 -- time at which the ego's centre was at the segment's start; NULL: it is beyond the recorded end
     s0_m DOUBLE NOT NULL,             -- path length from the start of the piece to the start of the segment {position}
     len_m DOUBLE NOT NULL,            -- length of the segment {position}
     driven_m DOUBLE NOT NULL,         -- driven length of the piece; beyond it, the path is extrapolated with the same curvature for 3 s at the last speed, at least 25 m {position}
