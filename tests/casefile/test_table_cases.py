@@ -106,6 +106,11 @@ def test_what_cannot_be_understood_is_refused(tmp_path: Path, change: tuple[str,
     assert message in str(refused.value)
 
 
+def test_an_empty_table_of_one_case_leaves_the_rows_of_the_others(tmp_path: Path) -> None:
+    empty = "\n- name: no step\n  given: {ego_state: []}\n  expect: []\n"
+    assert [result.ok for result in table_cases.run_table_cases(table(tmp_path, CASES + empty))] == [True, True]
+
+
 def test_a_table_without_cases_is_refused(tmp_path: Path) -> None:
     alone = table(tmp_path)
     table_cases.cases_file(alone).unlink()

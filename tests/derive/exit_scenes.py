@@ -66,9 +66,9 @@ def exit_road(hand: str = "rht", signs: tuple[float, ...] = (100.0, 220.0)) -> R
 MAIN, FORK = 400.0, 30.0
 
 
-def leaver(way: Road, *, change_at: float = 250.0, start: float = 20.0, end: float = 30.0) -> Actor:
+def leaver(way: Road, *, change_at: float = 250.0) -> Actor:
     """Drive at 20 m/s, over into the exit lane within 60 m and out by it."""
-    t = times(end)
-    s = start + 20 * t
+    t = times(30.0)
+    s = 20 + 20 * t
     through = LANE / 2 * (1 if way.environment.handedness == "rht" else -1)
     return moving("ego", way, t, s, through - 2 * through * np.clip((s - change_at) / 60, 0, 1))

@@ -57,19 +57,6 @@ def test_every_step_over_the_centre_line(hand: str) -> None:
     assert {(r["passing_id"], r["passing_known"], r["access"]) for r in found} == {(None, True, False)}
 
 
-@pytest.mark.parametrize(
-    ("centre", "seen", "forbidden"),
-    [("broken", "broken", False), ("solid solid", "solid_solid", True), ("none", "none", False)],
-)
-def test_what_may_be_crossed(centre: str, seen: str, forbidden: bool) -> None:
-    way = marked("rht", centre)
-    t = times(3.0)
-    found = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -0.5)), "FROM line_step")
-    assert {(row["marking"], row["forbidden"]) for row in found} == {(seen, forbidden)}
-    assert len(found) == len(t)
-    assert {row["begin_seen"] for row in found} == {False}  # it is over it when the log begins
-
-
 @pytest.mark.parametrize(("centre", "may"), [("solid broken", True), ("broken solid", False)])
 def test_of_a_double_line_the_nearer_one_counts(centre: str, may: bool) -> None:
     """OpenDRIVE names the two of a centre line from left to right: where one driver may cross it, the other may not."""
@@ -79,13 +66,6 @@ def test_of_a_double_line_the_nearer_one_counts(centre: str, may: bool) -> None:
     other = rows(tables(way, moving("ego", way, t, 500 - 10 * t, 0.5)), "FROM line_step")
     assert {row["forbidden"] for row in one} == {not may}
     assert {row["forbidden"] for row in other} == {may}
-
-
-def test_a_map_without_markings_does_not_say() -> None:
-    way = road()
-    t = times(1.0)
-    found = rows(tables(way, moving("ego", way, t, 100 + 10 * t, -0.5)), "FROM line_step")
-    assert {(row["marking"], row["forbidden"], row["beyond"]) for row in found} == {(None, None, "opposing")}
 
 
 @pytest.mark.ci
@@ -325,16 +305,6 @@ def test_parked_cars_do_not_excuse_overtaking_one_that_drives(hand: str) -> None
     assert "queue" in {row["passing_id"] for row in rows(tables(way, ego, parked, queue), "FROM line_step")}
 
 
-def test_none_in_a_hole_and_not_seen_to_begin_after_it() -> None:
-    way = marked("rht")
-    t = times(10.0)
-    ego = moving("ego", way, t, 100 + 10 * t, np.where(t > 2.05, -0.5, way.own))
-    keep = (t < 3.05) | (t > 4.05)
-    found = rows(tables(way, ego.keep(keep)), "SELECT DISTINCT t_since_ns, begin_seen FROM line_step ORDER BY ALL")
-    assert [row["begin_seen"] for row in found] == [True, False]
-    assert found[1]["t_since_ns"] == 4_100_000_000
-
-
 # ---- lane_change
 
 
@@ -386,22 +356,6 @@ def test_neither_a_wobble_nor_an_overtake_is_a_lane_change() -> None:
     s = 50 + 12 * t
     ego = moving("ego", way, t, s, swing(way, s, 80, 160))
     assert not rows(tables(way, ego, standing("x", way, t, 140, way.own)), "FROM lane_change")
-
-
-@pytest.mark.ci
-def test_who_may_be_there_is_said() -> None:
-    way = marked("rht", lanes=2)
-    t = times(14.0)
-    ego = moving("ego", way, t, 100 + 12 * t, offsets(way, t, 6.0))
-    near = moving("x", way, t, 80 + 12 * t, offsets(way, t, 99.0, start=0.5))
-    (found,) = rows(tables(way, ego, near.lost((t > 6.5) & (t < 8.5))), "FROM lane_change")
-    assert (found["follower_id"], found["known"]) == (None, False)
-    (found,) = rows(tables(way, ego, near.lost((t > 9) & (t < 9.5))), "FROM lane_change")
-    assert (found["follower_id"], found["known"], found["follower_decel_mps2"]) == ("x", True, None)
-    (found,) = rows(tables(way, ego, near.keep(t < 9.95)), "FROM lane_change")
-    assert (found["follower_id"], found["follower_decel_mps2"]) == ("x", None)
-    (found,) = rows(tables(way, ego, near), "FROM lane_change")
-    assert found["follower_decel_mps2"] == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.ci

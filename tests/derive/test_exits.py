@@ -13,9 +13,9 @@ from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, ti
 from tests.shared_data import shared
 
 
-def stayer(way: Road, end: float = 25.0) -> Actor:
+def stayer(way: Road) -> Actor:
     """Drive at 20 m/s in the through lane."""
-    t = times(end)
+    t = times(25.0)
     straight = Road(way.environment, ((MAIN + 250, 0.0),))
     return moving("ego", straight, t, 20 + 20 * t, straight.own)
 
@@ -54,20 +54,6 @@ def test_an_exit_not_taken() -> None:
     (found,) = rows(con, "FROM exit_passed")
     assert (found["taken"], found["t_near_ns"]) == (False, 0)
     assert found["t_gore_ns"] / 1e9 == pytest.approx((MAIN - 20) / 20, abs=0.11)
-
-
-def test_where_the_log_ends_first_nobody_knows() -> None:
-    way = exit_road()
-    con = derived(drive([stayer(way, end=15.0)], way.environment), tables=["exit_passed"])
-    (found,) = rows(con, "FROM exit_passed")
-    assert (found["taken"], found["t_gore_ns"]) == (None, None)
-
-
-def test_a_sign_passed_before_the_log_began_is_known_but_not_when() -> None:
-    way = exit_road()
-    con = derived(drive([leaver(way, start=230.0, end=20.0)], way.environment), tables=["exit_taken"])
-    (found,) = rows(con, "FROM exit_taken")
-    assert (found["sign_id"], found["t_sign_ns"]) == ("exit1", None)
 
 
 def test_a_road_without_signs() -> None:

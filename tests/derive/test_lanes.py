@@ -10,7 +10,6 @@ import pytest
 from shapely import affinity
 from shapely.geometry import LineString, Point, box
 
-from drivelint.sql.store import table_with_owner_id
 from tests import blinding
 from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, swing, tee, times
 
@@ -56,25 +55,6 @@ def test_in_a_junction_it_is_on_the_lanelet_that_leads_on(way: str) -> None:
     chain = [row["lanelet_id"] for row in rows(con, "FROM chain WHERE t_first_ns IS NOT NULL ORDER BY seq")]
     assert chain == expected
     assert rows(con, "SELECT count(DISTINCT chain_id) AS n FROM chain")[0]["n"] == 1
-
-
-@pytest.mark.ci
-def test_what_says_the_limit_or_that_there_is_none() -> None:
-    way = road(((100.0, 0.0),))
-    said = [(0.0, 30.0, None, "unread"), (30.0, 60.0, 14.0, "sign"), (60.0, 80.0, None, "road_type")]
-    names = ("s_start_m", "s_end_m", "limit_mps", "source")
-    limits = [{"lanelet_id": "1.0.-1", **dict(zip(names, row, strict=True))} for row in said]
-    environment = replace(
-        way.environment,
-        tables={
-            **way.environment.tables,
-            "speed_limit": table_with_owner_id("speed_limit", way.environment.environment_id, limits, "test"),
-        },
-    )
-    t = times(7.0)
-    con = derived(drive([moving("ego", way, t, 15 + 10 * t, way.own)], environment), tables=["ego_state"])
-    found = [(r["limit_mps"], r["limit_source"]) for r in rows(con, "FROM ego_state ORDER BY t_ns")]
-    assert list(dict.fromkeys(found)) == [(None, "unread"), (14.0, "sign"), (None, "none"), (None, None)]
 
 
 def test_a_chain_has_its_stations_in_one_line() -> None:

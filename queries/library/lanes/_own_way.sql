@@ -6,7 +6,7 @@ CREATE TABLE _own_way (
     ego_id VARCHAR NOT NULL,          -- the ego
     seg INTEGER NOT NULL,             -- see step: a new piece of the path begins after a hole
     k INTEGER NOT NULL,               -- number of the segment along the piece, from 0
-    t_from_ns BIGINT,                 -- time at which the ego's centre was at the segment's start; NULL: the segment is extrapolated
+    t_from_ns BIGINT,                 -- time at which the ego's centre was at the segment's start; NULL: it is beyond the recorded end
     s0_m DOUBLE NOT NULL,             -- path length from the start of the piece to the start of the segment {position}
     len_m DOUBLE NOT NULL,            -- length of the segment {position}
     driven_m DOUBLE NOT NULL,         -- driven length of the piece; beyond it, the path is extrapolated with the same curvature for 3 s at the last speed, at least 25 m {position}
@@ -66,10 +66,15 @@ way_end AS (
     SELECT
         p.drive_id, p.ego_id, p.seg, p.t_ns, p.x_m, p.y_m, p.s_m, l.p.speed_mps AS speed_mps,
         CASE WHEN NOT p.is_driven OR cos(l.p.yaw_rad - p.heading_rad) > cos(pi() / 4) THEN l.p.yaw_rad WHEN p.is_driven THEN p.heading_rad END AS heading_rad,
-        coalesce(CASE WHEN p.is_driven THEN greatest(-sharpest_bend_per_m(), least(sharpest_bend_per_m(), wrap_rad(p.heading_rad - p.earlier.heading_rad) / nullif(p.s_m - p.earlier.s_m, 0))) END, 0.0) AS bend_per_m
+        coalesce(CASE WHEN p.is_driven THEN greatest(-sharpest_bend_per_m(), least(sharpest_bend_per_m(), coalesce(wrap_rad(p.heading_rad - p.earlier.heading_rad) / nullif(p.heading_at_m - p.earlier.heading_at_m, 0), 0.0))) END, 0.0) AS bend_per_m
     FROM (
-        SELECT *, first_value({'heading_rad': heading_rad, 's_m': s_m}) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns ROWS BETWEEN 3 PRECEDING AND CURRENT ROW) AS earlier
-        FROM turned_point
+        SELECT *, first_value({'heading_rad': heading_rad, 'heading_at_m': heading_at_m}) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns ROWS BETWEEN 3 PRECEDING AND CURRENT ROW) AS earlier
+        FROM (
+            -- The heading is that of the chord from the point before to the next one, and so the heading in the middle between these.
+            SELECT *, (coalesce(lead(s_m) OVER w, s_m) + coalesce(lag(s_m) OVER w, s_m)) / 2 AS heading_at_m
+            FROM turned_point
+            WINDOW w AS (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns)
+        )
     ) p
     JOIN last_step l USING (drive_id, ego_id, seg)
     WHERE p.next_point IS NULL

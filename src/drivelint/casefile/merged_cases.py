@@ -98,7 +98,9 @@ def merge_cases(cases: Sequence[NumberedCase], key: str) -> Scene:
     merged: Scene = {}
     for member in cases:
         for table, rows in member.scene.items():
-            if _may_hold_several_cases(table, member.scene, key):
+            if not rows:
+                merged.setdefault(table, [])
+            elif _may_hold_several_cases(table, member.scene, key):
                 merged.setdefault(table, []).extend(_row_with_case_number(row, table, key, member.no) for row in rows)
             else:
                 merged[table] = rows  # the same rows in every case
