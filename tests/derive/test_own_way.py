@@ -143,7 +143,7 @@ def test_one_beside_that_has_no_room_in_the_lane_is_in_another_lane(hand: str, w
     t = times(8.0)
     side = np.sign(way.own)
     ego = moving("ego", way, t, 20 + 8 * t, way.own - side * 0.8)
-    other = moving("b", way, t, 32 + 8 * t, way.own + side * 1.7, width=width, length=10.0 if width > 2 else 2.2)
+    other = moving("b", way, t, 32 + 8 * t, way.own + side * 1.74, width=width, length=10.0 if width > 2 else 2.2)
     found = leads(way, ego, other)
     # in the last seconds the ego's own way does not show how it went on
     assert {row["object_id"] for at, row in found.items() if at < 5} == {lead}
