@@ -58,6 +58,9 @@ CREATE OR REPLACE MACRO blocks_sight(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, wi
         < length_m / 2 * abs(sin(yaw_rad) * dx_m - cos(yaw_rad) * dy_m) + width_m / 2 * abs(cos(yaw_rad) * dx_m + sin(yaw_rad) * dy_m);
 -- Half the diagonal of a box; if its size is not known, that of the largest box.
 CREATE OR REPLACE MACRO box_half_diagonal_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, both_half_diagonals_m() / 2);
+-- How far the ego's trailer reaches behind the ego's middle; NULL: no trailer. If its position is not known, it is as long as can be.
+CREATE OR REPLACE MACRO trailer_reach_m(length_m, combination_m) AS
+    CASE WHEN combination_m IS DISTINCT FROM length_m THEN coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END;
 
 -- Upper bound of the distance between an actor and the position extrapolated from its last (or next) velocity over t seconds. Vehicles and
 -- animals change their velocity by at most 10 m/s2, pedestrians move at 10 m/s at most, and an actor of unknown class may be either.

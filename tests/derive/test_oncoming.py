@@ -279,19 +279,6 @@ def test_who_was_met_and_lost_after_it_is_not_ahead(s: float, lane: str, v: floa
     assert {row["n_unplaced"] for row in rows(con, "FROM oncoming WHERE t_ns > 5e9")} == ({1, 0} if doubted else {0})
 
 
-def test_the_doubt_about_one_that_was_lost_passes() -> None:
-    """300 m apart, at 5 and 8 m/s: they would have met after 23 s; after twice that it is not coming any more."""
-    way = road(((900.0, 0.0),))
-    t = times(60.0)
-    ego = moving("ego", way, t, 100 + 5 * t, way.own)
-    other = moving("x", way, t, 425 - 5 * t, way.other).keep(t < 5.05)
-    con = derived(drive([ego, other], way.environment), tables=["unplaced"])
-    found = rows(con, "FROM unplaced ORDER BY t_ns")
-    assert found[0]["t_ns"] == 5_100_000_000
-    distance = math.hypot(400 - 125, LANE)
-    assert found[-1]["t_ns"] == pytest.approx(5e9 + 2 * distance / 10 * 1e9, abs=1.01e8)
-
-
 @pytest.mark.parametrize(
     ("s", "d", "v", "doubted"),
     [

@@ -142,33 +142,6 @@ def test_an_object_is_there_from_its_first_sample_to_its_last() -> None:
     assert [round(row["t_ns"] / 1e8) for row in found if row["x_m"] is None] == list(range(47, 56))
 
 
-def lost(con_rows: list[dict[str, object]]) -> list[tuple[object, ...]]:
-    return [(row["object_id"], row["code"]) for row in con_rows]
-
-
-def test_a_track_that_ends_is_lost_where_it_could_still_have_been_seen() -> None:
-    """At 40 m it did not just drive away; at 90 m it may have, unless the sensor reaches 100 m; 9.9 s is the log's end."""
-    way = road()
-    t = times(10.0)
-    early = t < 5.05
-    ego = standing("ego", way, t, 50, way.own)
-    others = [
-        standing("near", way, t, 90, way.own).keep(early),
-        standing("far", way, t, 140, way.own).keep(early),
-        standing("nowhere", way, t, 300, way.own).lost(t > 4.95).keep(early),
-        standing("to the end", way, t, 60, way.own).keep(t < 9.85),
-    ]
-    for range_m, expected in (
-        (None, [("near", "lost_near_ego"), ("nowhere", "lost_near_ego")]),
-        (100.0, [("far", "lost_in_range"), ("near", "lost_near_ego"), ("nowhere", "lost_near_ego")]),
-    ):
-        con = derived(drive([ego, *others], way.environment, sensor_range_m=range_m), tables=["lost_object"])
-        found = rows(con, "FROM lost_object WHERE code LIKE 'lost%' ORDER BY object_id")
-        assert lost(found) == expected
-        assert {row["t_from_ns"] for row in found} == {5_000_000_001}
-        assert {row["t_to_ns"] for row in found} == {10_000_000_000}
-
-
 def test_what_comes_the_other_way_round_a_ring_is_still_to_be_met() -> None:
     """Round a ring of 800 m it is 300 m behind the ego and 500 m ahead; towards the ego only the latter counts."""
     way = road(((800.0, 2 * math.pi / 800.0),), ring=True)

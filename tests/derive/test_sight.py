@@ -1,4 +1,4 @@
-"""What is in plain view is recorded: from when on somebody is out of sight, how far the ego's lane is seen, and what follows from it."""
+"""What is in plain view is recorded: how far the ego's lane is seen in a bend, and what follows from it."""
 
 from __future__ import annotations
 
@@ -14,69 +14,14 @@ from tests.scenes import LANE, derived, drive, judged, moving, road, rows, stand
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
+    from tests.scenes import Road
 
 LONG = road(((2000.0, 0.0),), lanes=(2, 2))
 AHEAD = ("criticality.ttc", "criticality.thw", "criticality.drac", "criticality.ttb", "criticality.mttc")
 
 
-def ends(scene: Drive) -> list[tuple[str, bool, float, float]]:
-    """Return (object, lost, time, time from which or until which it is out of sight), in seconds."""
-    found = rows(derived(scene, tables=["_track_end"]), "FROM _track_end ORDER BY object_id, t_ns, lost")
-    return [(r["object_id"], r["lost"], r["t_ns"] / 1e9, r["plain_ns"] / 1e9) for r in found]
-
-
-def lost_behind(*, box: bool, in_sight: bool = True) -> Drive:
-    """Return a drive past a lorry on the left, 30 m ahead, or past nothing: somebody ahead of it is lost at 3 s."""
-    t = times(8.0)
-    ego = moving("ego", LONG, t, 100 + 0.01 * t, -0.5 * LANE)
-    far = moving("far", LONG, t, 160 + 0.01 * t, 1.5 * LANE).keep(t < 3.05)
-    # half way to it
-    lorry = standing("lorry", LONG, t, 130, 0.5 * LANE, length=12.0, width=2.5)
-    return drive([ego, far, *([lorry] if box else [])], LONG.environment, in_sight=in_sight)
-
-
-def test_who_goes_behind_a_box_is_out_of_sight_at_once() -> None:
-    assert ends(lost_behind(box=True)) == [("far", True, 3.0, 3.0)]
-
-
-def test_who_is_lost_in_plain_view_may_be_there_for_as_long_as_a_tracker_may_lose_it() -> None:
-    assert ends(lost_behind(box=False)) == [("far", True, 3.0, 5.5)]
-    assert ends(lost_behind(box=False, in_sight=False)) == []
-
-
-def test_who_comes_into_view_was_not_there_before() -> None:
-    """Out from behind the lorry, or from nowhere."""
-    t = times(8.0)
-    ego = moving("ego", LONG, t, 100 + 0.01 * t, -0.5 * LANE)
-    lorry = standing("lorry", LONG, t, 130, 0.5 * LANE, length=12.0, width=2.5)
-    new = moving("new", LONG, t, 160 + 0.01 * t, 1.5 * LANE).keep(t > 3.95)
-    assert ends(drive([ego, lorry, new], LONG.environment, in_sight=True)) == [("new", False, 4.0, 3.5)]
-    assert ends(drive([ego, new], LONG.environment, in_sight=True)) == [("new", False, 4.0, 1.5)]
-
-
-def test_who_leaves_the_range_is_out_of_sight_at_once() -> None:
-    t = times(8.0)
-    ego = moving("ego", LONG, t, 100 + 10 * t, -0.5 * LANE)
-    # 99.8 m away at 4 s, 100.3 m a tenth of a second later
-    fast = moving("fast", LONG, t, 179.8 + 15 * t, -0.5 * LANE)
-    assert ends(drive([ego, fast.keep(t < 4.05)], LONG.environment, in_sight=True, sensor_range_m=100.0)) == [
-        ("fast", True, 4.0, 4.0)
-    ]
-    assert ends(drive([ego, fast.keep(t < 2.05)], LONG.environment, in_sight=True, sensor_range_m=100.0)) == [
-        ("fast", True, 2.0, 4.5)
-    ]
-
-
-def test_a_hole_has_two_ends() -> None:
-    t = times(10.0)
-    ego = moving("ego", LONG, t, 100 + 10 * t, -0.5 * LANE)
-    other = moving("x", LONG, t, 140 + 10 * t, -1.5 * LANE).lost((t > 2.95) & (t < 8.95))
-    assert ends(drive([ego, other], LONG.environment, in_sight=True)) == [("x", True, 2.9, 5.4), ("x", False, 9.0, 6.5)]
-
-
-def seen_ahead(bend: float, *, box: bool) -> dict[int, dict[str, Any]]:
-    """Return step in tenths -> the row of `sight` of an ego that drives along a lane; somebody far away is lost at 1 s."""
-    way = road(((40.0, 0.0), (300.0, bend)), lanes=(1, 2))
+def seen_ahead(way: Road, *, box: bool) -> dict[int, dict[str, Any]]:
+    """Return step in tenths -> the row of `_sight` of an ego that drives along a lane; somebody far away is lost at 1 s."""
     t = times(3.0)
     ego = moving("ego", way, t, 10 + 1 * t, -0.5 * LANE)
     gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).lost(t > 1.05)
@@ -85,28 +30,6 @@ def seen_ahead(bend: float, *, box: bool) -> dict[int, dict[str, Any]]:
     scene = drive([ego, gone, *([lorry] if box else [])], way.environment, in_sight=True, sensor_range_m=100.0)
     con = derived(scene, tables=["_sight", "hidden"])
     return {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM _sight ORDER BY t_ns")}
-
-
-def test_a_straight_lane_is_seen_past_who_is_beside_it() -> None:
-    (open_, past) = (seen_ahead(0.0, box=box)[20] for box in (False, True))
-    assert open_["lane_m"] == pytest.approx(100 - 6 - 2.4, abs=2.1)
-    assert past["lane_m"] == pytest.approx(open_["lane_m"])
-    # all around it is the lorry that ends the view
-    assert past["around_m"] == pytest.approx(math.hypot(62 - 12, LANE) - math.hypot(12.0, 2.5) / 2, abs=1e-6)
-    assert open_["around_m"] == 100.0
-
-
-@pytest.mark.parametrize(("into_m", "hides"), [(0.4, False), (0.6, True)])
-def test_a_box_that_hardly_reaches_into_the_lane_hides_no_vehicle_in_it(into_m: float, hides: bool) -> None:
-    way = road(((340.0, 0.0),), lanes=(1, 2))
-    t = times(3.0)
-    ego = moving("ego", way, t, 10 + 1 * t, -0.5 * LANE)
-    gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).lost(t > 1.05)
-    lorry = standing("lorry", way, t, 62, -LANE - 1.25 + into_m, length=12.0, width=2.5)
-    scene = drive([ego, gone, lorry], way.environment, in_sight=True, sensor_range_m=100.0)
-    row = rows(derived(scene, tables=["_sight"]), "FROM _sight ORDER BY t_ns DESC")[0]
-    assert row["lane_m"] == pytest.approx(62 - 6 - 13 - 2.4)
-    assert row["vehicle_lane_m"] == pytest.approx(row["lane_m"] if hides else 100 - 6 - 2.4, abs=2.1)
 
 
 def test_behind_a_box_inside_a_bend_nobody_is_seen() -> None:
@@ -129,10 +52,10 @@ def test_behind_a_box_inside_a_bend_nobody_is_seen() -> None:
         return between and min(across) < 0 < max(across)
 
     first = next(s / 10 for s in range(121, 1200) if stopped(s / 10))
-    (row,) = (seen_ahead(-1 / 60, box=True)[20],)
+    (row,) = (seen_ahead(way, box=True)[20],)
     # from the front of the ego, two steps of 2 m less at the most; along the lane's own middle, outside of the line
     assert first - 12 - 2.4 - 6 < row["lane_m"] <= (first - 12) * (1 + LANE / 120) - 2.4
-    assert seen_ahead(-1 / 60, box=False)[20]["lane_m"] > row["lane_m"] + 20
+    assert seen_ahead(way, box=False)[20]["lane_m"] > row["lane_m"] + 20
 
 
 def follows_nobody(*, in_sight: bool, seen_for_s: float = 3.0, gap: float = 60.0) -> Drive:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -83,22 +82,6 @@ def test_a_fast_vehicle_that_appears_behind_just_after_t0_may_have_been_overtaki
     assert row["verdict"] in {"unknown", "fail"}
     (row,) = judged([drive([ego, vbp], way.environment)], rules=[rule])
     assert row["verdict"] == "pass"
-
-
-def test_one_lost_on_foot_is_where_it_can_walk_to() -> None:
-    way = road()
-    t = times(6.0)
-    ego = moving("ego", way, t, 100 + 5 * t, way.own)
-    walker = moving("w", way, t, 130 + 0 * t, way.own - LANE + t, kind="pedestrian", length=0.5, width=0.5).keep(
-        t < 2.05
-    )
-    found = rows(derived(drive([ego, walker], way.environment), tables=["hidden"]), "FROM hidden ORDER BY t_ns")
-    assert found
-    assert {r["vehicle"] for r in found} == {False}
-    first = found[0]
-    assert first["least_m"] == pytest.approx(
-        np.hypot(130 - 110.5, LANE - 2) - 10 * 0.1 - math.hypot(4.8, 1.8) / 2 - math.hypot(0.5, 0.5) / 2, abs=0.05
-    )
 
 
 def _entering(hand: str) -> tuple[Road, Floats, Actor]:

@@ -87,7 +87,7 @@ hidden_place AS (
         SELECT a.drive_id, a.ego_id, a.t_ns, a.along_m
         FROM lane_place a
         CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
-        JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
+        JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + box_half_diagonal_m(p.length_m, p.width_m)
             AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
         UNION ALL
         -- A row with NULL for each step, for steps at which nothing blocks the view; otherwise min() ignores it. A left join with

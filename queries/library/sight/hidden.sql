@@ -193,7 +193,7 @@ station_range AS (
 distance_bound AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late, beside_lane, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
-        half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), CASE WHEN combination_m = length_m THEN 0.0 ELSE coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END) AS half_sizes_m,
+        half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), trailer_reach_m(length_m, combination_m)) AS half_sizes_m,
         greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), sqrt(between_x_m ** 2 + between_y_m ** 2) - between_error_m, sqrt(since_x_m ** 2 + since_y_m ** 2) - since_error_m, sqrt(until_x_m ** 2 + until_y_m ** 2) - until_error_m, ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_diagonal_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
@@ -275,7 +275,8 @@ FROM object_ahead_or_behind
 UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
-    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m),
+    -- The trailer is behind the ego.
+    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - greatest(h.half_sizes_m, both_half_diagonals_m() / 2 + trailer_reach_m(e.length_m, e.combination_m))),
     CASE WHEN h.distance_m > h.half_sizes_m THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
     h.along, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m), false
 FROM (SELECT * FROM incomplete_pair UNION ALL SELECT * FROM pair_beyond_corridor UNION SELECT * FROM pair_in_hole) h
