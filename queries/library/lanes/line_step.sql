@@ -122,6 +122,13 @@ hidden_step AS (
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
 ),
+-- The length decides whether a lost vehicle of unknown kind may be a bicycle.
+late_object_length AS (
+    SELECT p.drive_id, p.ego_id, p.object_id, min(p.length_m) AS length_m
+    FROM pair p
+    SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
+    GROUP BY ALL
+),
 -- Objects that are not recorded for a while and that, at another step, are seen in the ego's lane, where the ego may pass them over a solid
 -- line.
 lost_passable_object AS (
@@ -138,10 +145,11 @@ possible_pass AS (
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
     LEFT JOIN _sight v USING (drive_id, ego_id, t_ns)
     LEFT JOIN lost_passable_object s ON s.drive_id = h.drive_id AND s.ego_id = h.ego_id AND s.object_id = h.object_id
+    LEFT JOIN late_object_length z ON z.drive_id = h.drive_id AND z.ego_id = h.ego_id AND z.object_id = h.object_id
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
-        AND NOT (
-            h.late AND is_vehicle(h.actor_class) AND NOT is_bicycle(h.actor_class, NULL) AND s.object_id IS NULL
-            AND (h.ahead IS NOT DISTINCT FROM false OR coalesce(v.vehicle_lane_m >= passing_before_m(n.speed_mps), false))
+        AND NOT coalesce(
+            h.late AND is_vehicle(h.actor_class) AND NOT is_bicycle(h.actor_class, z.length_m) AND s.object_id IS NULL
+            AND (h.ahead IS NOT DISTINCT FROM false OR coalesce(v.vehicle_lane_m >= passing_before_m(n.speed_mps), false)), false
         )
 ),
 -- Steps near the vehicle that the ego overtakes, or may overtake, or near a pedestrian in its lane. If that vehicle is lost meanwhile, it
