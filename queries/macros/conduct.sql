@@ -56,6 +56,9 @@ CREATE OR REPLACE MACRO blocks_sight(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, wi
     x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2
     AND abs(x_m * dy_m - y_m * dx_m)
         < length_m / 2 * abs(sin(yaw_rad) * dx_m - cos(yaw_rad) * dy_m) + width_m / 2 * abs(cos(yaw_rad) * dx_m + sin(yaw_rad) * dy_m);
+-- The same for a box whose heading or size is not known.
+CREATE OR REPLACE MACRO may_block_sight(x_m, y_m, dx_m, dy_m, half_diagonal_m) AS
+    x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2 AND abs(x_m * dy_m - y_m * dx_m) < half_diagonal_m * sqrt(dx_m ** 2 + dy_m ** 2);
 -- Half the diagonal of a box; if its size is not known, that of the largest box.
 CREATE OR REPLACE MACRO box_half_diagonal_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, both_half_diagonals_m() / 2);
 -- How far the ego's trailer reaches behind the ego's middle; NULL: no trailer. If its position is not known, it is as long as can be.

@@ -26,14 +26,22 @@ viewpoint AS (
     JOIN data_log g ON g.drive_id = missing_step.drive_id AND g.in_sight
     JOIN ego_state e ON e.drive_id = missing_step.drive_id AND e.ego_id = missing_step.ego_id AND e.t_ns = missing_step.t_ns
 ),
-nearest_box AS (
+-- A box of unknown heading or size is taken to be as large as it can be.
+box_in_range AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, min(p.distance_m - box_half_diagonal_m(p.length_m, p.width_m)) AS around_m,
-        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m) AS lane_m,
-        min(p.rear_s_m - e.front_s_m) FILTER (p.s_m > e.s_m AND abs(p.d_m) - p.lat_half_m < p.half_width_m - hides_vehicle_m()) AS vehicle_distance_m
+        e.drive_id, e.ego_id, e.t_ns, p.distance_m - r.half_diagonal_m AS around_m, p.s_m > e.s_m AS is_ahead,
+        abs(p.d_m) - coalesce(p.lat_half_m, r.half_diagonal_m) - p.half_width_m AS beside_lane_m,
+        coalesce(p.rear_s_m, p.s_m - r.half_diagonal_m) - e.front_s_m AS lane_m
     FROM viewpoint e
     JOIN pair p USING (drive_id, ego_id, t_ns)
+    CROSS JOIN LATERAL (SELECT box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m) r
     WHERE p.distance_m < e.range_m
+),
+nearest_box AS (
+    SELECT
+        drive_id, ego_id, t_ns, min(around_m) AS around_m,
+        min(lane_m) FILTER (is_ahead AND beside_lane_m < 0) AS lane_m, min(lane_m) FILTER (is_ahead AND beside_lane_m < -hides_vehicle_m()) AS vehicle_distance_m
+    FROM box_in_range
     GROUP BY ALL
 ),
 corridor_segment AS (
@@ -88,7 +96,10 @@ hidden_place AS (
         FROM lane_place a
         CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
         JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + box_half_diagonal_m(p.length_m, p.width_m)
-            AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
+            AND coalesce(
+                blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m),
+                may_block_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, box_half_diagonal_m(p.length_m, p.width_m))
+            )
         UNION ALL
         -- A row with NULL for each step, for steps at which nothing blocks the view; otherwise min() ignores it. A left join with
         -- blocks_sight in its condition would be a nested loop.
