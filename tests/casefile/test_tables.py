@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import duckdb
 
+from drivelint.casefile.merged_cases import NumberedCase, merge_cases
 from drivelint.casefile.mutants import mutants_of_select
 from drivelint.casefile.table_cases import rows_difference
 from drivelint.casefile.table_mutation import judge_table_mutants
@@ -50,3 +51,10 @@ def test_a_mutant_that_fails_on_the_rows_of_a_case_is_noticed() -> None:
     step = library_tables()["step"]
     judged = judge_table_mutants(step)
     assert (judged.n, judged.survivors) == (len(mutants_of_select(step.select)), ())
+
+
+def test_a_case_with_an_empty_table_leaves_the_rows_of_the_other_cases() -> None:
+    with_row = NumberedCase(0, {"pair": [{"drive_id": "d", "ego_id": "e", "t_ns": 0}]}, {})
+    without = NumberedCase(1, {"pair": []}, {})
+    row = {"drive_id": "0:d", "ego_id": "e", "t_ns": 0}
+    assert merge_cases([with_row, without], "drive_id") == merge_cases([without, with_row], "drive_id") == {"pair": [row]}
