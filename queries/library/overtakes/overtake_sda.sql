@@ -156,7 +156,7 @@ SELECT
     drive_id, ego_id, occurrence, profile, t0_ns, ov_id,
     CASE WHEN is_known AND NOT has_sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
-    ov_id IS NULL AND n_unplaced = 0 AS nobody,
+    coalesce(ov_id IS NULL AND n_unplaced = 0, false) AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
     -- Without an OV, a zone is given only if all vehicles have positions and the free distance is greater than SDA. With an OV and a
     -- vehicle without a position, only zone A is certain: that vehicle may leave even less distance.
