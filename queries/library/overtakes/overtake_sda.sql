@@ -18,7 +18,7 @@ CREATE TABLE overtake_sda (
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound: no OV is seen within this free distance {position}
     nobody BOOLEAN NOT NULL,          -- the positions of all vehicles are known, and there is no OV within da_m {position}
     sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0. Profile observed: at the ego's mean speed, if completed; at least the distance that ego and OV covered during the overtake plus the OV's stopping distance, if da_m is no more than that; NULL: undefined {position, heading, velocity, size}
-    spare_m DOUBLE,                   -- spare distance: da_m minus sda_m {position, heading, velocity, size}
+    spare_m DOUBLE,                   -- spare distance: the distance ahead minus sda_m; not NULL where da_m is NULL only because of a doubt {position, heading, velocity, size}
     spare_s DOUBLE,                   -- time in which spare_m closes at the speed v_AV + v_OV {position, heading, velocity, size}
     zone VARCHAR,                     -- [zone] NULL: unknown {position, heading, velocity, size}
     reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
