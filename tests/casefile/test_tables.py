@@ -1,10 +1,13 @@
-"""Mutants of the SELECTs of library tables."""
+"""Cases of library tables, and mutants of their SELECTs."""
 
 from __future__ import annotations
 
 import duckdb
 
+from drivelint.casefile.merged_cases import NumberedCase, merge_cases
 from drivelint.casefile.mutants import mutants_of_select
+from drivelint.casefile.table_cases import rows_difference
+from drivelint.sql.declarations import column_types
 
 LANE_BESIDE = """
 SELECT n.lanelet_id, count(b.marking) AS n
@@ -25,3 +28,26 @@ def test_a_mutant_of_a_select_with_a_cross_join_is_valid_sql() -> None:
     assert turned == "turned: n.width_m < 4"
     for _, select in found:
         con.execute(f"EXPLAIN {select}")
+
+
+def test_a_reason_may_be_expected_as_a_mapping() -> None:
+    row = dict.fromkeys(column_types()["registration"], 0) | {
+        "reason": '{"code":"others_fit","args":{"trouble":"{\\"code\\":\\"seldom_on_lane\\"}","n_fit":1}}',
+    }
+    for reason, same in (
+        ({"code": "others_fit"}, True),
+        ({"args": {"trouble": {"code": "seldom_on_lane"}, "n_fit": 1}}, True),
+        ({"args": {"n_fit": 2}}, False),
+        ({"args": {"trouble": {"code": "on_lane"}}}, False),
+        ({"code": {"code": "others_fit"}}, False),
+    ):
+        assert (rows_difference("registration", [{"reason": reason}], [row]) == "") is same
+
+
+def test_a_case_with_an_empty_table_leaves_the_rows_of_the_other_cases() -> None:
+    with_row = NumberedCase(0, {"pair": [{"drive_id": "d", "ego_id": "e", "t_ns": 0}]}, {})
+    without = NumberedCase(1, {"pair": []}, {})
+    row = {"drive_id": "0:d", "ego_id": "e", "t_ns": 0}
+    assert (
+        merge_cases([with_row, without], "drive_id") == merge_cases([without, with_row], "drive_id") == {"pair": [row]}
+    )

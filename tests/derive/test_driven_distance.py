@@ -1,4 +1,4 @@
-"""What an overtake that was broken off really took, however long the log goes on; and who is beside the ego, not ahead."""
+"""What an overtake that was broken off really took, however long the log goes on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.reasons.reason_text import sentence
 from tests.derive.overtake_scene import crash
-from tests.scenes import Actor, Road, derived, drive, moving, road, rows, swing, times
+from tests.scenes import Actor, Road, derived, drive, moving, road, rows
 
 
 def as_driven(actors: list[Actor], way: Road) -> dict[str, Any]:
@@ -45,30 +45,3 @@ def test_an_oncoming_vehicle_that_brakes_counts_with_the_way_that_it_made() -> N
     k0 = round(row["t0_ns"] / 1e8)
     assert row["zone"] == "A"
     assert row["covered_m"] == pytest.approx((ego.x[-1] - ego.x[k0]) + (ov.x[k0] - ov.x[-1]), abs=0.6)
-
-
-@pytest.mark.parametrize(
-    ("share", "gain", "ahead", "vbp"),
-    [
-        (0.28, 3.0, False, []),
-        (0.28, 3.0, True, ["ahead"]),
-        (0.28, 30.0, False, ["beside"]),
-        (0.8, 3.0, False, ["beside"]),
-    ],
-)
-def test_who_is_beside_an_ego_over_the_line_is_overtaken_only_if_it_is_passed(
-    share: float, gain: float, ahead: bool, vbp: list[str]
-) -> None:
-    """In a queue, a car at the edge of the lane is beside the ego when that moves 0.1 m over the line, and the log ends there.
-
-    With `gain` the ego passes it, or its centre goes over the line (`share`), or another car is ahead.
-    """
-    way, t = road(), times(10.0)
-    s = 50 + gain / 10 * t
-    ego = moving("ego", way, t, s, swing(way, s, 50 + 0.5 * gain, None, change=0.2 * gain, share=share))
-    edge = way.own - way.over * 1.9
-    beside = moving("beside", way, t, 51 + 0.65 * gain + 0.2 * t, edge)
-    others = [moving("ahead", way, t, 80 + 0.2 * t, way.own)] if ahead else []
-    found = rows(derived(drive([ego, beside, *others], way.environment), tables=["overtake"]), "FROM overtake")
-    assert [row["vbp_id"] for row in found] == vbp
-    assert all((row["vbp_gap_m"] < 0) == (row["vbp_id"] == "beside") for row in found)

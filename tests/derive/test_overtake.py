@@ -161,32 +161,6 @@ def test_a_hole_before_t0_hides_where_it_began() -> None:
     assert reasons == {"the log does not show the beginning of the overtake: record the ego from before it"}
 
 
-def test_two_vehicles_passed_in_one_go_are_two_occurrences() -> None:
-    way, (ego, vbp, ov) = scene()
-    second = moving("second", way, ego.t_s, 155 + 4 * ego.t_s, way.own)
-    found = one([ego, vbp, second, ov], way, "overtake")
-    assert [(row["occurrence"], row["vbp_id"], row["passed"]) for row in found] == [
-        (0, "vbp", True),
-        (1, "second", True),
-    ]
-    assert len({(row["t0_ns"], row["t3_ns"]) for row in found}) == 1
-    assert found[1]["vbp_gap_m"] - found[0]["vbp_gap_m"] == pytest.approx(15.0)
-
-
-def test_a_vehicle_further_ahead_that_is_not_reached_is_not_passed() -> None:
-    way, (ego, vbp, ov) = scene()
-    far = moving("far", way, ego.t_s, 300 + 8 * ego.t_s, way.own)
-    assert [row["vbp_id"] for row in one([ego, vbp, far, ov], way, "overtake")] == ["vbp"]
-
-
-@pytest.mark.parametrize(("turned", "counts"), [(math.pi, True), (0.0, True)])
-def test_a_parked_car_is_passed_whichever_way_it_stands(turned: float, counts: bool) -> None:
-    way, (ego, _, ov) = scene()
-    parked = standing("parked", way, ego.t_s, 200, way.own, turned=turned)
-    found = one([ego, parked, ov], way, "overtake")
-    assert [(row["vbp_id"], row["status"], row["ov_id"]) for row in found] == [("parked", "completed", "ov")]
-
-
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_beside_a_parked_car_that_leaves_room_in_the_lane_the_ego_is_over_the_line_for_another_reason(
     hand: str,
@@ -340,13 +314,6 @@ def test_what_may_be_an_overtake_is_not_surely_one() -> None:
     assert [(row["begin_seen"], row["sure"]) for row in rows(con, "FROM overtake")] == [(False, True)]
     found = scenes.judged([drive([sways, lost, ov], way.environment)], rules=["ukhc.r126.ds*"])
     assert not [row["reason"] for row in found if row["verdict"] == "fail"]
-
-
-def test_who_is_passed_parked_the_wrong_way_round_does_not_come() -> None:
-    way, (ego, _, _) = scene()
-    parked = standing("vbp", way, ego.t_s, 215.0, way.own + 1.2 * way.over, turned=np.pi)
-    found = one([ego, parked], way, "overtake_step")
-    assert {(row["vbp_id"], row["ov_id"]) for row in found} == {("vbp", None)}
 
 
 def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
@@ -644,27 +611,6 @@ def test_an_opportunity_that_is_not_taken() -> None:
     assert not one(held_up(one_way, t), one_way, "opportunity")
 
 
-def test_an_opportunity_taken() -> None:
-    way, actors = scene()
-    found = one(actors, way, "opportunity")
-    (o,) = one(actors, way, "overtake")
-    mine = [row for row in found if row["object_id"] == "vbp" and row["taken"]]
-    assert {row["profile"] for row in mine} == {"relaxed", "nominal", "aggressive"}
-    assert all(row["t_end_ns"] <= o["t0_ns"] for row in mine)
-
-
-def test_with_a_blind_spot_the_best_moment_is_elsewhere() -> None:
-    """Nobody can be told to be absent while somebody has no position: those steps are no opportunity."""
-    way = road(((2000.0, 0.0),))
-    t = times(20.0)
-    ghost = standing("ghost", way, t, 1500, way.other, turned=math.pi).lost(t < 15.05)
-    found = one([*held_up(way, t), ghost], way, "opportunity")
-    assert {row["t_best_ns"] >= 15_100_000_000 for row in found} == {True}
-    everywhere = standing("ghost", way, t, 1500, way.other, turned=math.pi).lost(t >= 0)
-    blind = one([*held_up(way, t), everywhere], way, "opportunity")
-    assert not [row for row in blind if row["t_best_ns"] is not None]
-
-
 @pytest.mark.parametrize("rules", [("ukhc.r162.safe-distance-ahead", "ukhc.r126.ds-*")])
 def test_the_rules_agree_with_the_tables(rules: tuple[str, ...]) -> None:
     way, actors = scene()
@@ -727,18 +673,6 @@ def test_an_oncoming_vehicle_that_speeds_up_counts_with_the_way_that_it_made() -
     calm = moving("ov", way, t, ego.x[-1] + 3 + made[-1] - 5 * t, way.other)
     (row,) = (r for r in one([ego, vbp, calm], way, "overtake_sda") if r["profile"] == "observed")
     assert row["sda_m"] is None
-
-
-@pytest.mark.parametrize("nearer", [False, True])
-def test_an_aborted_overtake_fails_where_even_what_was_driven_of_it_was_too_long(nearer: bool) -> None:
-    """Back in its lane 8 m before the oncoming car, which would have stopped in 12 m; else 300 m before it."""
-    way, (ego, vbp, ov) = scene(abort=True)
-    t = ego.t_s
-    actors = [ego, vbp, moving("ov", way, t, 300 - 9 * t, way.other) if nearer else ov]
-    (found,) = one(actors, way, "overtake")
-    (row,) = (r for r in one(actors, way, "overtake_sda") if r["profile"] == "observed")
-    assert (found["status"], found["ov_id"]) == ("aborted", "ov")
-    assert (row["zone"], row["sda_m"] is None) == (("A", False) if nearer else (None, True))
 
 
 @pytest.mark.ci

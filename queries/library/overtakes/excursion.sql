@@ -13,7 +13,7 @@ CREATE TABLE excursion (
     t_back_ns BIGINT,                 -- the step after t_end_ns, wholly inside again; NULL: the log, a hole or the corridor ends first {position}
     t_over_ns BIGINT,                 -- first step with the whole box over the boundary; NULL: never {position, heading, size}
     t_out_ns BIGINT NOT NULL,         -- t_over_ns; if the box is never wholly over: the first step within 0.1 m of the greatest excursion {position}
-    t_turn_ns BIGINT,                 -- last step after t_out_ns before the lateral speed finally changes its sign; NULL: never {position}
+    t_turn_ns BIGINT,                 -- last step from t_out_ns on before the ego finally moves back, at 0.1 m/s or more towards the running lane; NULL: never {position}
     t_return_ns BIGINT,               -- first step after t_turn_ns with a corner over the line again; NULL: never {position}
     max_out_m DOUBLE NOT NULL,        -- greatest distance of a corner beyond the boundary {position, heading, size}
     centre_over BOOLEAN NOT NULL,     -- the centre crossed the boundary too: an intended manoeuvre {position}

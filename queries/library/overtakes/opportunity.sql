@@ -1,6 +1,6 @@
 -- Periods in which the ego is held up behind a slower vehicle, with an opposing lane in which it could overtake, and the best moment in
--- each period for each profile. Held up: within 5 s of a lead that drives at less than 80 % of the limit. The ego would pass at its own
--- speed or, if that is faster, at 10 mph more than the lead, up to the limit.
+-- each period for each profile. Held up: within 5 s, or 10 m, of a lead that drives at less than 80 % of the limit. The ego would pass at
+-- its own speed or, if that is faster, at 10 mph more than the lead, up to the limit.
 -- lifetime: part
 CREATE TABLE opportunity (
     drive_id VARCHAR NOT NULL,        -- the drive

@@ -15,7 +15,7 @@ CREATE TABLE overtake (
     side INTEGER NOT NULL,            -- the overtaking side: 1 left, -1 right {position}
     vbp_id VARCHAR NOT NULL,          -- VBP: the vehicle being passed, or one that may be it {position}
     vbp_placed BOOLEAN NOT NULL,      -- the VBP's position was known at t0; false: only its presence is known {position}
-    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s; and the ego does not turn in at a junction. False: it may be one {position}
+    sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s; and the ego does not turn in at a junction. If it did not pass the VBP, it must be in an opposing lane, and either astride for 3 s or seen from the beginning on. False: it may be one {position}
     begin_seen BOOLEAN NOT NULL,      -- t0 is certain: the step before t0 exists, and the ego is inside the lane there; false if t0 may lie in a turn at a junction, or if the ego may have begun later (t_begun_ns) {position}
     t0_ns BIGINT NOT NULL,            -- first step with a corner more than 0.05 m over the boundary or, if the ego stayed over it before it was level with the VBP: the last step at which it gained less than 0.1 m in a second and after which its centre gained 0.3 m {position}
     t_begun_ns BIGINT NOT NULL,       -- step at which the overtake certainly has begun: t0_ns or, if the centre then stayed and gained 0.1 to 0.3 m, the last step of this stay {position}

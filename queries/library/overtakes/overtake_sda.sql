@@ -18,7 +18,7 @@ CREATE TABLE overtake_sda (
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound: no OV is seen within this free distance {position}
     nobody BOOLEAN NOT NULL,          -- the positions of all vehicles are known, and there is no OV within da_m {position}
     sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0. Profile observed: at the ego's mean speed, if completed; at least the distance that ego and OV covered during the overtake plus the OV's stopping distance, if da_m is no more than that; NULL: undefined {position, heading, velocity, size}
-    spare_m DOUBLE,                   -- spare distance: da_m minus sda_m {position, heading, velocity, size}
+    spare_m DOUBLE,                   -- spare distance: the distance ahead minus sda_m; not NULL where da_m is NULL only because of a doubt {position, heading, velocity, size}
     spare_s DOUBLE,                   -- time in which spare_m closes at the speed v_AV + v_OV {position, heading, velocity, size}
     zone VARCHAR,                     -- [zone] NULL: unknown {position, heading, velocity, size}
     reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
@@ -156,7 +156,7 @@ SELECT
     drive_id, ego_id, occurrence, profile, t0_ns, ov_id,
     CASE WHEN is_known AND NOT has_sped_up AND (n_unplaced = 0 OR da_m <= sda_m) THEN da_m END AS da_m,
     ov_id IS NULL AS at_least,
-    ov_id IS NULL AND n_unplaced = 0 AS nobody,
+    coalesce(ov_id IS NULL AND n_unplaced = 0, false) AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
     -- Without an OV, a zone is given only if all vehicles have positions and the free distance is greater than SDA. With an OV and a
     -- vehicle without a position, only zone A is certain: that vehicle may leave even less distance.
