@@ -1,10 +1,13 @@
-"""Mutants of the SELECTs of library tables."""
+"""Cases of library tables, and mutants of their SELECTs."""
 
 from __future__ import annotations
 
 import duckdb
 
 from drivelint.casefile.mutants import mutants_of_select
+from drivelint.casefile.table_cases import rows_difference
+from drivelint.casefile.table_mutation import judge_table_mutants
+from drivelint.sql.library import library_tables
 
 LANE_BESIDE = """
 SELECT n.lanelet_id, count(b.marking) AS n
@@ -25,3 +28,25 @@ def test_a_mutant_of_a_select_with_a_cross_join_is_valid_sql() -> None:
     assert turned == "turned: n.width_m < 4"
     for _, select in found:
         con.execute(f"EXPLAIN {select}")
+
+
+def test_a_reason_may_be_expected_as_a_mapping() -> None:
+    row = {
+        "drive_id": "d",
+        "reason": '{"code":"others_fit","args":{"trouble":"{\\"code\\":\\"seldom_on_lane\\"}","n_fit":1}}',
+    }
+    for reason, same in (
+        ({"code": "others_fit"}, True),
+        ({"args": {"trouble": {"code": "seldom_on_lane"}, "n_fit": 1}}, True),
+        ({"args": {"n_fit": 2}}, False),
+        ({"args": {"trouble": {"code": "on_lane"}}}, False),
+        ({"code": {"code": "others_fit"}}, False),
+    ):
+        assert (rows_difference("registration", [{"reason": reason}], [row]) == "") is same
+
+
+def test_a_mutant_that_fails_on_the_rows_of_a_case_is_noticed() -> None:
+    """The squares of `step` with another exponent are no numbers where a difference is negative."""
+    step = library_tables()["step"]
+    judged = judge_table_mutants(step)
+    assert (judged.n, judged.survivors) == (len(mutants_of_select(step.select)), ())

@@ -14,11 +14,13 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
 * `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
-  Numbers must agree to the written decimals, at least two. `expect: []` means: no row.
+  Numbers must agree to the written decimals, at least two. `expect: []` means: no row. A text that is JSON, such as a reason, may be
+  given as a mapping with the parts that matter, in a list with an item for each row: `reason: [{code: on_lane}]`.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -165,7 +167,11 @@ def rows_difference(table: str, expected: Sequence[Row], rows: Sequence[Row]) ->
     if len(expected) != len(rows):
         return f"expected {_count(expected)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
     kinds = declarations.column_types()[table]
-    ordered = [c for c in kinds if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row for row in expected)]
+    ordered = [
+        c
+        for c in kinds
+        if not _UNORDERED_TYPE.match(kinds[c]) and all(c in row and not isinstance(row[c], dict) for row in expected)
+    ]
     pairs = zip(_in_order(expected, ordered), _in_order(rows, ordered), strict=True)
     for wanted, row in pairs:
         for column, value in wanted.items():
@@ -185,9 +191,19 @@ def _in_order(rows: Sequence[Row], columns: Sequence[str]) -> list[Row]:
 def _is_same(expected: Any, actual: Any) -> bool:
     if isinstance(expected, list) and isinstance(actual, list):
         return len(expected) == len(actual) and all(map(_is_same, expected, actual))
-    if isinstance(expected, dict) and isinstance(actual, dict):
-        return all(key in actual and _is_same(value, actual[key]) for key, value in expected.items())
+    if isinstance(expected, dict):
+        parts = _value_of_json(actual) if isinstance(actual, str) else actual
+        return isinstance(parts, dict) and all(
+            key in parts and _is_same(value, parts[key]) for key, value in expected.items()
+        )
     return is_same_value(expected, actual, 1)
+
+
+def _value_of_json(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
 
 
 def _row_text(row: Mapping[str, Any]) -> str:

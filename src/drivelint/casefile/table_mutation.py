@@ -62,8 +62,10 @@ def _first_difference(
             rows = filled.rows_by_case(select)
     except duckdb.InterruptException:
         return "takes too long"
-    except duckdb.Error:
+    except duckdb.ProgrammingError:
         return None
+    except duckdb.Error:
+        return "fails on these rows"
     found = (rows_difference(table.name, each.expected, rows.get(each.given.no, [])) for each in cases)
     return next((message for message in found if message), "")
 
