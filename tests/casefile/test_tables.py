@@ -50,3 +50,14 @@ def test_a_mutant_that_fails_on_the_rows_of_a_case_is_noticed() -> None:
     step = library_tables()["step"]
     judged = judge_table_mutants(step)
     assert (judged.n, judged.survivors) == (len(mutants_of_select(step.select)), ())
+
+
+def test_a_geometry_is_expected_as_text_wherever_its_outline_begins() -> None:
+    row = {"geom": "POLYGON ((0 0, 2 0, 2 2, 0 2, 0 0))"}
+    for geom, same in (
+        ("POLYGON ((2 2, 0 2, 0 0, 2 0, 2 2))", True),
+        ("POLYGON ((0 0, 2 0, 2 2, 0 0))", False),
+        (None, False),
+    ):
+        assert (rows_difference("junction_area", [{"geom": geom}], [row]) == "") is same
+    assert rows_difference("junction_area", [{"geom": None}], [{"geom": None}]) == ""

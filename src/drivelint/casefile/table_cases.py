@@ -15,7 +15,8 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
   Numbers must agree to the written decimals, at least two. `expect: []` means: no row. A text that is JSON, such as a reason, may be
-  given as a mapping with the parts that matter, in a list with an item for each row: `reason: [{code: on_lane}]`.
+  given as a mapping with the parts that matter, in a list with an item for each row: `reason: [{code: on_lane}]`. A geometry is given and
+  expected as well-known text: `geom: POLYGON ((0 0, 2 0, 2 2, 0 0))`; an equal area agrees, wherever its outline begins.
 """
 
 from __future__ import annotations
@@ -129,7 +130,8 @@ class FilledCases:
 
     def __init__(self, table: LibraryTable, cases: Sequence[CompleteCase]) -> None:
         self._con = case_database()
-        self._columns = ", ".join(declarations.column_comments()[table.name])
+        kinds = declarations.column_types()[table.name]
+        self._columns = ", ".join(f"ST_AsText({c}) AS {c}" if "GEOMETRY" in kinds[c] else c for c in kinds)
         self._numbered_columns = [
             c for c in ("drive_id", "environment_id") if c in declarations.column_comments()[table.name]
         ]
@@ -175,7 +177,8 @@ def rows_difference(table: str, expected: Sequence[Row], rows: Sequence[Row]) ->
     pairs = zip(_in_order(expected, ordered), _in_order(rows, ordered), strict=True)
     for wanted, row in pairs:
         for column, value in wanted.items():
-            if not _is_same(value, row[column]):
+            is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
+            if not is_same(value, row[column]):
                 return f"expected {column} = {value!r}, got {row[column]!r}: {_row_text(row)}"
     return ""
 
@@ -197,6 +200,11 @@ def _is_same(expected: Any, actual: Any) -> bool:
             key in parts and _is_same(value, parts[key]) for key, value in expected.items()
         )
     return is_same_value(expected, actual, 1)
+
+
+def _is_same_shape(expected: str | None, actual: str | None) -> bool:
+    equal = "SELECT $1 IS NOT DISTINCT FROM $2 OR coalesce(ST_Equals(ST_GeomFromText($1), ST_GeomFromText($2)), false)"
+    return bool(case_database().execute(equal, [expected, actual]).fetchall()[0][0])
 
 
 def _value_of_json(text: str) -> Any:
