@@ -61,3 +61,9 @@ def test_a_geometry_is_expected_as_text_wherever_its_outline_begins() -> None:
     ):
         assert (rows_difference("junction_area", [{"geom": geom}], [row]) == "") is same
     assert rows_difference("junction_area", [{"geom": None}], [{"geom": None}]) == ""
+
+
+def test_a_number_in_quotes_has_the_decimals_of_its_zeros() -> None:
+    row = {"slack0_m": 0.045}
+    for slack, same in ((0.05, True), ("0.050", False), ("0.045", True), ("none", False)):
+        assert (rows_difference("_lane_segment", [{"slack0_m": slack}], [row]) == "") is same

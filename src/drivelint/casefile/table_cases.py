@@ -14,15 +14,17 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
 * `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
-  Numbers must agree to the written decimals, at least two. `expect: []` means: no row. A text that is JSON, such as a reason, may be
-  given as a mapping with the parts that matter, in a list with an item for each row: `reason: [{code: on_lane}]`. A geometry is given and
-  expected as well-known text: `geom: POLYGON ((0 0, 2 0, 2 2, 0 0))`; an equal area agrees, wherever its outline begins.
+  Numbers must agree to the written decimals, at least two; in quotes, zeros at the end count: '0.050'. `expect: []` means: no row.
+* A text that is JSON, such as a reason, may be expected as a mapping with the parts that matter, in a list with an item for each row:
+  `reason: [{code: on_lane}]`. A geometry is given and expected as well-known text: `geom: POLYGON ((0 0, 2 0, 2 2, 0 0))`; an equal area
+  agrees, wherever its outline begins.
 """
 
 from __future__ import annotations
 
 import json
 import re
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import duckdb
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from drivelint.sql.library import LibraryTable
 
 _MAP: Final = "m"
+_NUMBER: Final = re.compile(r"-?\d+(\.\d+)?")
 _CASE_NUMBER: Final = re.compile(r"(\d+):")
 _UNORDERED_TYPE: Final = re.compile(r"DOUBLE|FLOAT|GEOMETRY|STRUCT|.*\]", re.IGNORECASE)
 
@@ -199,6 +202,8 @@ def _is_same(expected: Any, actual: Any) -> bool:
         return isinstance(parts, dict) and all(
             key in parts and _is_same(value, parts[key]) for key, value in expected.items()
         )
+    if isinstance(expected, str) and isinstance(actual, float | Decimal):
+        return _NUMBER.fullmatch(expected) is not None and is_same_value(Decimal(expected), actual, 1)
     return is_same_value(expected, actual, 1)
 
 
