@@ -143,7 +143,8 @@ class FilledCases:
         try:
             for name, rows in scene.items():
                 insert_rows(self._con, name, rows)
-            for name in statement_texts("map_shapes").keys() & scene.keys():
+            shapes = set(statement_texts("map_shapes") if re.search(r"\bgeom\b", table.select) else ())
+            for name in shapes & scene.keys():
                 self._con.execute(statement(f"map_shapes/{name}"))
         except BaseException:
             self.clear()
