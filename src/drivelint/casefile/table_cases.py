@@ -208,9 +208,9 @@ def _is_same(expected: Any, actual: Any) -> bool:
     return is_same_value(expected, actual, 1)
 
 
-def _is_same_shape(expected: str | None, actual: str | None) -> bool:
+def _is_same_shape(expected_text: str | None, actual_text: str | None) -> bool:
     equal = "SELECT $1 IS NOT DISTINCT FROM $2 OR coalesce(ST_Equals(ST_GeomFromText($1), ST_GeomFromText($2)), false)"
-    return bool(case_database().execute(equal, [expected, actual]).fetchall()[0][0])
+    return bool(case_database().execute(equal, [expected_text, actual_text]).fetchall()[0][0])
 
 
 def _value_of_json(text: str) -> Any:
