@@ -7,7 +7,8 @@ import duckdb
 from drivelint.casefile.merged_cases import NumberedCase, merge_cases
 from drivelint.casefile.mutants import mutants_of_select
 from drivelint.casefile.table_cases import rows_difference
-from drivelint.sql.declarations import column_types
+from drivelint.casefile.table_mutation import judge_table_mutants
+from drivelint.sql.library import library_tables
 
 LANE_BESIDE = """
 SELECT n.lanelet_id, count(b.marking) AS n
@@ -31,7 +32,8 @@ def test_a_mutant_of_a_select_with_a_cross_join_is_valid_sql() -> None:
 
 
 def test_a_reason_may_be_expected_as_a_mapping() -> None:
-    row = dict.fromkeys(column_types()["registration"], 0) | {
+    row = {
+        "drive_id": "d",
         "reason": '{"code":"others_fit","args":{"trouble":"{\\"code\\":\\"seldom_on_lane\\"}","n_fit":1}}',
     }
     for reason, same in (
@@ -51,3 +53,27 @@ def test_a_case_with_an_empty_table_leaves_the_rows_of_the_other_cases() -> None
     assert (
         merge_cases([with_row, without], "drive_id") == merge_cases([without, with_row], "drive_id") == {"pair": [row]}
     )
+
+
+def test_a_mutant_that_fails_on_the_rows_of_a_case_is_noticed() -> None:
+    """The squares of `step` with another exponent are no numbers where a difference is negative."""
+    step = library_tables()["step"]
+    judged = judge_table_mutants(step)
+    assert (judged.n, judged.survivors) == (len(mutants_of_select(step.select)), ())
+
+
+def test_a_geometry_is_expected_as_text_wherever_its_outline_begins() -> None:
+    row = {"geom": "POLYGON ((0 0, 2 0, 2 2, 0 2, 0 0))"}
+    for geom, same in (
+        ("POLYGON ((2 2, 0 2, 0 0, 2 0, 2 2))", True),
+        ("POLYGON ((0 0, 2 0, 2 2, 0 0))", False),
+        (None, False),
+    ):
+        assert (rows_difference("junction_area", [{"geom": geom}], [row]) == "") is same
+    assert rows_difference("junction_area", [{"geom": None}], [{"geom": None}]) == ""
+
+
+def test_a_number_in_quotes_has_the_decimals_of_its_zeros() -> None:
+    row = {"slack0_m": 0.045}
+    for slack, same in ((0.05, True), ("0.050", False), ("0.045", True), ("none", False)):
+        assert (rows_difference("_lane_segment", [{"slack0_m": slack}], [row]) == "") is same

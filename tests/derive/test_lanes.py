@@ -173,21 +173,6 @@ def test_a_step_without_position_is_on_no_lane() -> None:
     assert len(rows(con, "FROM ego_lane")) == len(t)
 
 
-@pytest.mark.parametrize(
-    ("lateral", "wrong_way", "ok"),
-    [(0.0, False, True), (1.0, False, True), (1.3, False, False), (6.0, False, False), (0.0, True, False)],
-)
-def test_registration_is_checked_before_blame(lateral: float, wrong_way: bool, ok: bool) -> None:
-    way = road()
-    t = times(10.0)
-    s = 300 - 10 * t if wrong_way else 100 + 10 * t
-    con = derived(drive([moving("ego", way, t, s, way.own - lateral)], way.environment), tables=["registration"])
-    (found,) = rows(con, "FROM registration")
-    assert found["ok"] is ok
-    assert found["n_steps"] == len(t)
-    assert (found["n_on_lane"] == len(t)) is (lateral < 1.77)
-
-
 @pytest.mark.ci
 def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_direction() -> None:
     """Neither the ego nor another vehicle that drives so says that the map is wrong."""
@@ -204,28 +189,6 @@ def test_a_lane_that_is_driven_both_ways_fits_a_drive_against_its_drawn_directio
     (found,) = rows(con, "FROM registration")
     assert (found["ok"], found["n_with_direction"]) == (True, found["n_moving"])
     assert {(row["with_direction"], row["with_traffic"]) for row in rows(con, "FROM ego_state")} == {(False, True)}
-
-
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-@pytest.mark.parametrize(
-    ("standing_off_m", "driving_off_m", "ok"),
-    [
-        (1.3, 0.0, True),  # it waits at the kerb for most of the log, then drives in the middle
-        (0.0, 1.3, False),  # it waits in the middle, and drives beside it
-        (0.0, 1.1, True),
-    ],
-)
-@pytest.mark.parametrize("driving_s", [3.0, 9.0])
-def test_where_the_ego_stands_says_nothing_of_the_fit(
-    hand: str, standing_off_m: float, driving_off_m: float, ok: bool, driving_s: float
-) -> None:
-    way, t = road(hand=hand), times(30.0 + driving_s)
-    s = 100.0 + 5.0 * np.maximum(t - 30.0, 0.0)
-    off = np.where(t <= 30.0, standing_off_m, driving_off_m)
-    con = derived(drive([moving("ego", way, t, s, way.own - off * way.over)], way.environment), tables=["registration"])
-    (found,) = rows(con, "FROM registration")
-    assert found["ok"] == ok
-    assert found["lateral_median_m"] == pytest.approx(driving_off_m, abs=1e-6)
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -258,59 +221,6 @@ def test_other_vehicles_tell_whether_the_map_or_the_ego_is_elsewhere(
     assert found["ok"] is ok
     wrong = {row["verdict"] for row in judged([drive(actors, way.environment)], rules=["ukhc.r143.direction"])}
     assert wrong == ({"fail"} if ok else {"unknown"})
-
-
-@pytest.mark.parametrize(
-    ("off_m", "moved_m", "n_others", "driving_s", "ok"),
-    [
-        (1.3, 0.0, 3, 4.0, True),
-        (1.3, 0.0, 2, 4.0, False),
-        (0.0, 1.3, 3, 4.0, False),  # the map is moved, under everybody
-        (1.8, -0.5, 3, 4.0, True),
-        (1.3, 0.0, 3, 1.5, False),  # it may be parked beside the lane
-    ],
-)
-def test_other_vehicles_tell_whether_the_map_is_moved_across(
-    off_m: float, moved_m: float, n_others: int, driving_s: float, ok: bool
-) -> None:
-    way, t = road(((2000.0, 0.0),), hand="rht"), times(4.0)
-    middle = way.own - moved_m * way.over
-    actors = [moving("ego", way, t, 600 + 12 * np.minimum(t, driving_s), middle - off_m * way.over)]
-    actors += [moving(f"o{n}", way, t, 700 + 30 * n + 12 * t, middle) for n in range(n_others)]
-    (found,) = rows(derived(drive(actors, way.environment), tables=["registration"]), "FROM registration")
-    assert found["ok"] is ok
-
-
-@pytest.mark.parametrize(("seconds", "ok"), [(14.5, False), (15.5, True)])
-def test_a_log_may_begin_in_the_middle_of_an_overtake(seconds: float, ok: bool) -> None:
-    """Against its lane for no longer than an overtake takes: the other vehicles tell nothing about the ego then."""
-    way, t = road(((2000.0, 0.0),), hand="rht"), times(seconds)
-    actors = [moving("ego", way, t, 600 - 12 * t, way.own), moving("o", way, t, 900 + 15 * t, way.own)]
-    (found,) = rows(derived(drive(actors, way.environment), tables=["registration"]), "FROM registration")
-    assert found["ok"] is ok
-
-
-@pytest.mark.parametrize(
-    ("off_m", "speed", "seconds", "aside"),
-    [
-        (0.65, 12.0, 8.0, False),
-        (0.75, 12.0, 8.0, True),
-        (0.75, 12.0, 4.0, False),
-        (0.75, 12.0, 16.0, True),
-        (1.0, 0.0, 60.0, False),
-    ],
-)
-@pytest.mark.parametrize("side", [1, -1])
-def test_an_ego_far_beside_the_middle_of_its_lane_may_be_on_a_moved_map(
-    off_m: float, speed: float, seconds: float, aside: bool, side: int
-) -> None:
-    """Not if it stands at the kerb, nor if the log is too short to tell."""
-    way, t = road(((2000.0, 0.0),), hand="rht"), times(seconds)
-    ego = moving("ego", way, t, 600 + speed * t, way.own + side * off_m)
-    (found,) = rows(derived(drive([ego], way.environment), tables=["registration"]), "FROM registration")
-    assert found["ok"]
-    assert found["lateral_median_m"] == pytest.approx(off_m, abs=1e-6)
-    assert found["is_aside"] is aside
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])

@@ -47,17 +47,6 @@ def test_what_somebody_is(kind: str | None, length: float | None, v: float, know
     assert found == [{"actor_class": known}]
 
 
-def test_a_thing_that_is_seen_for_a_moment_and_moves_is_none() -> None:
-    way = road()
-    on = T < 0.55
-    fast = moving("x", way, T, 100 + 1.4 * T, way.own + 20, kind="object", length=0.5).keep(on)
-    still = standing("y", way, T, 100, way.own + 20, kind="object", length=0.5).keep(on)
-    lost = standing("z", way, T, 100, way.own + 20, kind="object", length=0.5).lost(T >= 0)
-    con = derived(drive([ride(way), fast, still, lost], way.environment), tables=["road_user"])
-    found = {r["actor_id"]: r["actor_class"] for r in rows(con, "FROM road_user")}
-    assert (found["x"], found["y"], found["z"]) == (None, "object", None)
-
-
 @HANDS
 @pytest.mark.parametrize(
     ("kind", "d", "ahead"),

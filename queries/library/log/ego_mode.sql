@@ -7,7 +7,7 @@ CREATE TABLE ego_mode (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     mode VARCHAR NOT NULL,            -- [mode] a declared event whose values are on and off; one row per step for each mode that the ego ever declared
-    is_on BOOLEAN                     -- the mode is on, by the last declaration before the step; NULL: none yet
+    is_on BOOLEAN                     -- the mode is on, by the last declaration before the step; NULL: none yet, or not known
 );
 
 INSERT INTO ego_mode BY NAME

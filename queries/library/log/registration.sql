@@ -19,7 +19,7 @@ CREATE TABLE registration (
     n_on_lane BIGINT NOT NULL,        -- steps with the centre on a drivable lane, or on a shoulder, lay-by, border, parking, restricted or cycle lane
     n_moving BIGINT NOT NULL,         -- steps on a lane, with a heading, faster than 1 m/s, and not in an overtake in an opposing lane
     n_with_direction BIGINT NOT NULL, -- steps of n_moving with a heading within 90 degrees of the lane's direction, or on a lane that is driven in both directions
-    lateral_median_m DOUBLE,          -- median distance from the centre line of the lane; if enough steps lie outside an overtake in the opposing lane, only of those steps; NULL: never on a lane
+    lateral_median_m DOUBLE,          -- median distance from the centre line of the lane, of the steps faster than 1 m/s (in a log without such steps: of all steps); if enough of them lie outside an overtake in the opposing lane, only of those; NULL: never on a lane
     is_aside BOOLEAN NOT NULL,        -- lateral_median_m is so great, over meaningful steps, that the map may be shifted against the log
     ok BOOLEAN NOT NULL,              -- the map fits well enough for the rules that need it. One of: the ego fits; the ego is against its lane, but three of four other vehicles are with theirs; the ego keeps to the middle of a lane before and after the time elsewhere (within 0.6 m for 5 s and 50 m, or 0.3 m for 2 s and 20 m; on a road of the same direction or on two roads that cross)
     reason VARCHAR NOT NULL           -- why ok is true or false, as JSON from the macro why

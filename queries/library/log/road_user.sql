@@ -4,7 +4,7 @@
 CREATE TABLE road_user (
     drive_id VARCHAR NOT NULL,        -- the drive
     actor_id VARCHAR NOT NULL,        -- the actor
-    actor_class VARCHAR,              -- [actor_class] the class, as far as known: the recorded class; vehicle also for an actor without a class that is longer than 3 m; object only for an actor that stays within 1 m in the whole log; NULL: it may be any class {class}
+    actor_class VARCHAR,              -- [actor_class] the class, as far as known: the recorded class; vehicle also for an actor without a class, or of class object and not standing, that is longer than 3 m; object only for an actor that stays within 1 m in the whole log (within 0.5 m for each second of a track of less than 2 s); NULL: it may be any class {class}
     length_m DOUBLE,                  -- box length {size}
     width_m DOUBLE                    -- box width {size}
 );

@@ -5,7 +5,7 @@
 -- lifetime: map
 CREATE TABLE _exit_lane (
     environment_id VARCHAR NOT NULL,  -- the map
-    lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway
+    lanelet_id VARCHAR NOT NULL,      -- a lanelet of a lane that leaves the main carriageway (of a lane whose type does not say so: one of the last eleven before the fork)
     from_id VARCHAR,                  -- the through lanelet beside the exit lane; NULL: the exit branches off without one
     side VARCHAR NOT NULL             -- [side] the side on which the exit lane leaves
 );

@@ -1,5 +1,6 @@
--- Every 2 m grid cell that the lane area of a segment may touch: the cells of its bounding box whose centre is within half a cell's
--- diagonal of that area. Each row contains the segment itself, so that one join gives the position of a point.
+-- Every 2 m grid cell that the lane area of a segment may touch: the cells of its bounding box whose centre is less than 1.5 m before or
+-- behind that area and less than 2.1 m beside it. (Half a cell's diagonal is 1.4 m; in a bend, these distances are not exact.) Each row
+-- contains the segment itself, so that one join gives the position of a point.
 -- lifetime: map
 CREATE TABLE _lane_cell (
     environment_id VARCHAR NOT NULL,  -- the map

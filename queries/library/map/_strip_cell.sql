@@ -1,4 +1,5 @@
--- Every 4 m grid cell that the strip beside a drivable segment may touch, found as in lane_cell.
+-- Every 4 m grid cell that the strips beside a drivable segment may touch: the cells of their bounding box whose centre is less than 2.9 m
+-- before or behind them. (Half a cell's diagonal is 2.8 m.)
 -- lifetime: map
 CREATE TABLE _strip_cell (
     environment_id VARCHAR NOT NULL,  -- the map

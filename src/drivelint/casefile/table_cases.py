@@ -14,15 +14,18 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
 * `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
 * Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
-  Numbers must agree to the written decimals, at least two. `expect: []` means: no row. A column that is declared NOT NULL never is. A
-  text that is JSON, such as a reason, may be given as a mapping with the parts that matter, in a list with an item for each row:
-  `reason: [{code: on_lane}]`.
+  Numbers must agree to the written decimals, at least two; in quotes, zeros at the end count: '0.050'. `expect: []` means: no row.
+  A column that is declared NOT NULL never is.
+* A text that is JSON, such as a reason, may be expected as a mapping with the parts that matter, in a list with an item for each row:
+  `reason: [{code: on_lane}]`. A geometry is given and expected as well-known text: `geom: POLYGON ((0 0, 2 0, 2 2, 0 0))`; an equal area
+  agrees, wherever its outline begins.
 """
 
 from __future__ import annotations
 
 import json
 import re
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import duckdb
@@ -44,6 +47,7 @@ if TYPE_CHECKING:
     from drivelint.sql.library import LibraryTable
 
 _MAP: Final = "m"
+_NUMBER: Final = re.compile(r"-?\d+(\.\d+)?")
 _CASE_NUMBER: Final = re.compile(r"(\d+):")
 _UNORDERED_TYPE: Final = re.compile(r"DOUBLE|FLOAT|GEOMETRY|STRUCT|.*\]", re.IGNORECASE)
 
@@ -130,7 +134,8 @@ class FilledCases:
 
     def __init__(self, table: LibraryTable, cases: Sequence[CompleteCase]) -> None:
         self._con = case_database()
-        self._columns = ", ".join(declarations.column_comments()[table.name])
+        kinds = declarations.column_types()[table.name]
+        self._columns = ", ".join(f"ST_AsText({c}) AS {c}" if "GEOMETRY" in kinds[c] else c for c in kinds)
         self._numbered_columns = [
             c for c in ("drive_id", "environment_id") if c in declarations.column_comments()[table.name]
         ]
@@ -139,7 +144,8 @@ class FilledCases:
         try:
             for name, rows in scene.items():
                 insert_rows(self._con, name, rows)
-            for name in statement_texts("map_shapes").keys() & scene.keys():
+            shapes = set(statement_texts("map_shapes") if re.search(r"\bgeom\b", table.select) else ())
+            for name in shapes & scene.keys():
                 self._con.execute(statement(f"map_shapes/{name}"))
         except BaseException:
             self.clear()
@@ -169,7 +175,7 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
         return f"expected {_count(expected_rows)}, got {_count(rows)}{': ' if rows else ''}{'; '.join(_row_text(row) for row in rows[:3])}"
     kinds = declarations.column_types()[table]
     for row in rows:
-        if empty := [column for column, kind in kinds.items() if kind.endswith(" NOT NULL") and row[column] is None]:
+        if empty := [c for c, kind in kinds.items() if kind.endswith(" NOT NULL") and c in row and row[c] is None]:
             return f"{empty[0]} is declared NOT NULL, but is NULL: {_row_text(row)}"
     ordered = [
         c
@@ -180,7 +186,8 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
     pairs = zip(_in_order(expected_rows, ordered), _in_order(rows, ordered), strict=True)
     for wanted, row in pairs:
         for column, value in wanted.items():
-            if not _is_same(value, row[column]):
+            is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
+            if not is_same(value, row[column]):
                 return f"expected {column} = {value!r}, got {row[column]!r}: {_row_text(row)}"
     return ""
 
@@ -201,7 +208,15 @@ def _is_same(expected_value: Any, actual_value: Any) -> bool:
         return isinstance(parts, dict) and all(
             key in parts and _is_same(value, parts[key]) for key, value in expected_value.items()
         )
+    if isinstance(expected_value, str) and isinstance(actual_value, float | Decimal):
+        is_number = _NUMBER.fullmatch(expected_value) is not None
+        return is_number and is_same_value(Decimal(expected_value), actual_value, 1)
     return is_same_value(expected_value, actual_value, 1)
+
+
+def _is_same_shape(expected_text: str | None, actual_text: str | None) -> bool:
+    equal = "SELECT $1 IS NOT DISTINCT FROM $2 OR coalesce(ST_Equals(ST_GeomFromText($1), ST_GeomFromText($2)), false)"
+    return bool(case_database().execute(equal, [expected_text, actual_text]).fetchall()[0][0])
 
 
 def _value_of_json(text: str) -> Any:
