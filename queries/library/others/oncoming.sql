@@ -45,7 +45,7 @@ object_not_oncoming AS (
     SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
 ),
 doubtful_object AS (
-    SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'object_id': u.object_id, 'lack': u.code}) AS u
+    SELECT u.drive_id, u.ego_id, u.t_ns, count(DISTINCT u.object_id) AS n, min({'object_id': u.object_id, 'lack': u.code}) AS u
     FROM (
         SELECT drive_id, ego_id, t_ns, object_id, code FROM unplaced
         UNION ALL
