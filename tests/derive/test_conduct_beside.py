@@ -77,44 +77,6 @@ def test_any_road_user_on_either_side(kind: str | None, d: float, side: str, on:
     assert (found[0]["ego_speed_mps"], found[0]["speed_mps"]) == pytest.approx((10.0, 9.0))
 
 
-def test_one_that_comes_the_other_way_is_beside_but_not_along() -> None:
-    way = road()
-    t = times(4.0)
-    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 140 - 10 * t, way.other)
-    found = rows(
-        derived(drive([ego, other], way.environment), tables=["beside", "passing"]), "FROM beside ORDER BY t_ns"
-    )
-    assert seconds(found, "t_ns") == [1.8, 1.9, 2.0, 2.1, 2.2]
-    assert {(row["along"], row["on_carriageway"], row["side"]) for row in found} == {(False, True, "left")}
-
-
-@pytest.mark.parametrize(
-    ("degrees", "along"), [(0, True), (44, True), (-44, True), (46, False), (-46, False), (89, False)]
-)
-def test_who_crosses_does_not_go_along(degrees: float, along: bool) -> None:
-    """As one of a log does who steps into the ego's way at 89.9 degrees."""
-    way = road()
-    t = times(0.5)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    other = moving("x", way, t, 102 + 10 * t, way.own - 2, kind="pedestrian", length=0.6, width=0.5)
-    other = replace(other, yaw=np.full(len(t), math.radians(degrees)))
-    found = rows(derived(drive([ego, other], way.environment), tables=["beside"]), "FROM beside")
-    assert {row["along"] for row in found} == {along}
-
-
-def test_turned_round_the_ego_has_its_left_on_the_other_side() -> None:
-    """It drives 10 m and then stands the other way round."""
-    way = road()
-    t = times(2.0)
-    ego = moving("ego", way, t, 90 + 10 * np.clip(t, 0, 1), way.own)
-    ego = replace(ego, yaw=np.where(t > 1.05, math.pi, 0.0))
-    other = standing("x", way, t, 100, way.own - 3)
-    con = derived(drive([ego, other], way.environment), tables=["beside"])
-    found = rows(con, "FROM beside ORDER BY t_ns")
-    assert [row["side"] for row in found] == ["right" if row["t_ns"] < 1.05e9 else "left" for row in found]
-    assert len({row["side"] for row in found}) == 2
-
-
 def test_who_may_be_beside_is_a_row_without_numbers() -> None:
     """Lost while beside: nobody may say that he is gone; lost far away he cannot be here yet."""
     way = road()
@@ -183,26 +145,6 @@ def test_the_ego_passes_a_parked_car_round_the_overtaking_side(hand: str) -> Non
     assert seconds([found], "t_to_ns")[0] == pytest.approx((204.8 - 50) / 12, abs=0.1)
     assert found["gap_m"] == pytest.approx(3.5 - 1.8, abs=1e-6)
     assert (found["ego_speed_mps"], found["speed_mps"]) == pytest.approx((12.0, 0.0))
-
-
-def test_the_ego_is_passed() -> None:
-    way = road(lanes=(0, 2))
-    t = times(10.0)
-    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
-    fast = moving("x", way, t, 80 + 15 * t, -0.5 * LANE)
-    (found,) = passings(way, ego, fast)
-    assert (found["ego_passes"], found["side"], found["same_lane"], found["whole"]) == (False, "left", False, True)
-    assert found["t_ns"] == 4_100_000_000
-
-
-def test_neither_oncoming_nor_level_nor_behind_is_a_passing() -> None:
-    way = road(lanes=(1, 2))
-    t = times(10.0)
-    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
-    oncoming = moving("o", way, t, 200 - 10 * t, 0.5 * LANE)
-    level = moving("l", way, t, 100 + 10 * t + 0.2 * np.sin(5 * t), -0.5 * LANE)
-    catches_up = moving("c", way, t, 80 + 11 * t, -0.5 * LANE)
-    assert not passings(way, ego, oncoming, level, catches_up)
 
 
 @pytest.mark.ci

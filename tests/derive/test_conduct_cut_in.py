@@ -70,19 +70,6 @@ def test_where_lanes_merge_nobody_cuts_in() -> None:
     assert [row["inside"] for row in placed] == [False, True]
 
 
-def test_a_cut_in_that_is_taken_back_and_made_again_is_two() -> None:
-    way = marked("rht", lanes=2)
-    t = times(24.0)
-    ego = moving("ego", way, t, 60 + 12 * t, offsets(way, t, 99.0))
-    d = (
-        offsets(way, t, 3.0, start=0.5, to=0.9)
-        + offsets(way, t, 9.0, start=0.0, to=-0.4)
-        + offsets(way, t, 15.0, start=0.0, to=1.0)
-    )
-    found = cuts(way, ego, moving("x", way, t, 90 + 12 * t, d))
-    assert [(row["occurrence"], row["in_place_ns"] is None) for row in found] == [(0, True), (1, False)]
-
-
 @pytest.mark.ci
 def test_where_it_was_not_seen_to_come() -> None:
     way = marked("rht", lanes=2)

@@ -136,16 +136,3 @@ def test_a_breakdown_says_so_with_its_hazard_lights(hand: str) -> None:
     for rule in ("stvo.ri1", "ukhc.r240.no-stopping"):
         assert "fail" not in verdicts(lit, rule)
         assert "fail" in verdicts(dark, rule)
-
-
-def test_every_step_has_a_row_and_nobody_is_said_where_nobody_is() -> None:
-    way, d = motorway("rht")
-    t = times(5.0)
-    ego = moving("ego", way, t, 100 + 20 * t, d)
-    lead = moving("v", way, t, 150 + 20 * t, d)
-    found = rows(derived(drive([ego, lead], way.environment), tables=["in_way"]), "FROM in_way ORDER BY t_ns")
-    assert len(found) == len(t)
-    assert {(row["object_id"], row["known"]) for row in found} == {("v", True)}
-    assert max(row["need_mps2"] for row in found) < 1e-9  # it closes in on nobody
-    alone = rows(derived(drive([ego], way.environment), tables=["in_way"]), "FROM in_way ORDER BY t_ns")
-    assert {(row["object_id"], row["gap_m"], row["known"]) for row in alone} == {(None, None, True)}

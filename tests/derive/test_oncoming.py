@@ -65,24 +65,12 @@ def test_one_that_never_moves_is_parked_and_not_oncoming(  # noqa: PLR0917
     assert {row["n_unplaced"] for row in found} == {0}
 
 
-@pytest.mark.parametrize("kind", ["car", "truck", "motorcycle", "bicycle", "animal", None])
-def test_every_vehicle_and_animal_counts_and_an_unknown_kind_may_be_one(kind: str | None) -> None:
+def test_one_of_unknown_kind_as_long_as_a_car_is_a_vehicle() -> None:
     way = road()
     t = times(0.3)
-    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 300 - 9 * t, way.other, kind=kind)
+    ego, other = moving("ego", way, t, 100 + 10 * t, way.own), moving("x", way, t, 300 - 9 * t, way.other, kind=None)
     con = derived(drive([ego, other], way.environment), tables=["oncoming"])
     assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {"x"}
-
-
-def test_who_walks_is_no_oncoming_vehicle() -> None:
-    way = road()
-    t = times(0.3)
-    ego, other = (
-        moving("ego", way, t, 100 + 10 * t, way.own),
-        moving("x", way, t, 300 - t, way.other, kind="pedestrian"),
-    )
-    con = derived(drive([ego, other], way.environment), tables=["oncoming"])
-    assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {None}
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -95,16 +83,6 @@ def test_who_comes_and_may_be_on_foot_or_a_vehicle_is_unplaced(hand: str, kind: 
     found = rows(derived(drive([ego, other], way.environment), tables=["oncoming"]), "FROM oncoming")
     assert {(row["object_id"], row["n_unplaced"]) for row in found} == {(None, 1)}
     assert {sentence(row["unplaced_reason"]) for row in found} == {"actor x comes, but its class is not known"}
-
-
-def test_the_nearest_counts() -> None:
-    way = road()
-    t = times(0.3)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    others = [moving(f"{n}", way, t, s - 10 * t, way.other) for n, s in enumerate((400, 250, 320))]
-    behind = moving("behind", way, t, 60 - 10 * t, way.other)
-    con = derived(drive([ego, *others, behind], way.environment), tables=["oncoming"])
-    assert {row["object_id"] for row in rows(con, "FROM oncoming")} == {"1"}
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -172,16 +150,6 @@ def test_behind_a_missing_link_an_oncoming_vehicle_is_met_where_it_comes_in() ->
     found = rows(con, "FROM oncoming ORDER BY t_ns")
     assert [row["da_m"] for row in found] == pytest.approx(list(250 - 4.8 - 20 * t), abs=1e-6)
     assert [row["on_its_way"] for row in found] == [s > 300.05 for s in 350 - 10 * t]
-
-
-@pytest.mark.parametrize(("range_m", "free", "reason"), [(None, 497.6, "map_end"), (120.0, 117.6, "sensor_range")])
-def test_how_far_the_road_is_free(range_m: float | None, free: float, reason: str) -> None:
-    way = road()
-    ego = standing("ego", way, times(0.2), 100, way.own)
-    con = derived(drive([ego], way.environment, sensor_range_m=range_m), tables=["oncoming"])
-    row = rows(con, "FROM oncoming")[0]
-    assert row["free_m"] == pytest.approx(free)
-    assert row["free_reason"] == reason
 
 
 def test_where_the_road_goes_on_the_corridor_ends() -> None:

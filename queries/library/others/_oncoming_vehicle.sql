@@ -42,11 +42,11 @@ oncoming_object AS (
 lane_entry AS (
     SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM oncoming_object WHERE vehicle GROUP BY ALL
 ),
--- The distance that the vehicle still has to drive to the lane, at each step before it arrives.
+-- The distance that the vehicle still has to drive to the lane, at each step before it arrives; straight on over steps without a position.
 approach_step AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.x_m, y.e.s_m AS entry_s_m,
-        sqrt((p.x_m - lead(p.x_m) OVER w) ** 2 + (p.y_m - lead(p.y_m) OVER w) ** 2) AS step_m, p.t_ns = y.e.t_ns AS has_arrived
+        sqrt((p.x_m - lead(p.x_m IGNORE NULLS) OVER w) ** 2 + (p.y_m - lead(p.y_m IGNORE NULLS) OVER w) ** 2) AS step_m, p.t_ns = y.e.t_ns AS has_arrived
     FROM lane_entry y
     JOIN pair p ON p.drive_id = y.drive_id AND p.ego_id = y.ego_id AND p.object_id = y.object_id
         AND p.t_ns <= y.e.t_ns AND p.t_ns >= y.e.t_ns - 15_000_000_000

@@ -1,7 +1,7 @@
 -- Vehicles ahead that are in the ego's lane by the map, although the ego's own path, as driven after this step, passes beside them. A lane
 -- of a map may be wide, cut a corner, or run where no vehicle drives. The ego does not follow a vehicle that its box does not meet on its
--- path. Two kinds are listed. The first kind stands and leaves the middle of the lane free. The second kind moves, but not towards the
--- path; it is not in front of the ego's box, and one lane has no room for both, so that the two are in different lanes.
+-- path. Two kinds are listed. The first kind stands. The second kind moves, but not towards the path; it is not in front of the ego's box,
+-- and one lane has no room for both, so that the two are in different lanes.
 --
 -- If sensors measured the positions, a vehicle that the path overlaps by less than `measured_meeting_m` is listed as well, as not certain.
 --
@@ -14,7 +14,7 @@ CREATE TABLE _passed_by (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- a vehicle ahead that is in the running lane by the map, but that the ego's path passes at a distance of 0.2 m or more. It stands clear of the middle of the lane, or the lane is too narrow for both. Vehicles are excluded round which the ego swerves in the last 2 s, or for which it leaves its lane
+    object_id VARCHAR NOT NULL,       -- a vehicle ahead that is in the running lane by the map, but that the ego's path passes at a distance of 0.2 m or more. It stands, or the lane is too narrow for both. Vehicles are excluded round which the ego swerves in the last 2 s, or for which it leaves its lane
     is_sure BOOLEAN NOT NULL          -- false: the positions were measured by sensors, and the path overlaps the vehicle by less than their accuracy, or passes it by less than 0.2 m
 );
 

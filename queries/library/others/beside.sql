@@ -4,7 +4,7 @@
 CREATE TABLE beside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they pass each other before the next step; or at which they may overlap: then the other columns are NULL
+    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they pass each other before the next step; or at which they may overlap: then the columns from side on are NULL
     object_id VARCHAR NOT NULL,       -- another actor
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     side VARCHAR,                     -- [side] the side of the ego on which the object is {position}

@@ -32,7 +32,7 @@ WITH ahead AS (
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN state_dynamics s ON s.drive_id = p.drive_id AND s.actor_id = p.object_id AND s.t_ns = p.t_ns
-    WHERE p.s_m > e.s_m AND p.s_m - e.s_m < way_reach_m()
+    WHERE p.s_m > e.s_m AND p.s_m - e.s_m < way_reach_m() AND e.front_s_m IS NOT NULL
 ),
 in_way_check AS (
     SELECT

@@ -4,7 +4,7 @@
 CREATE TABLE oncoming (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- the step; no row: the ego's own position is not known
+    t_ns BIGINT NOT NULL,             -- the step; no row: the ego's own position or the side of overtaking is not known
     object_id VARCHAR,                -- OV: the nearest oncoming vehicle, on the overtaking chain or on its way to it; NULL: none seen
     da_m DOUBLE,                      -- distance ahead: from the ego's front to the OV's front along the corridor; NULL: no OV {position}
     speed_mps DOUBLE,                 -- speed of the OV {velocity}
@@ -45,7 +45,7 @@ object_not_oncoming AS (
     SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
 ),
 doubtful_object AS (
-    SELECT u.drive_id, u.ego_id, u.t_ns, count(*) AS n, min({'object_id': u.object_id, 'lack': u.code}) AS u
+    SELECT u.drive_id, u.ego_id, u.t_ns, count(DISTINCT u.object_id) AS n, min({'object_id': u.object_id, 'lack': u.code}) AS u
     FROM (
         SELECT drive_id, ego_id, t_ns, object_id, code FROM unplaced
         UNION ALL
