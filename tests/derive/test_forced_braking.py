@@ -72,7 +72,7 @@ def test_who_has_to_stop_for_the_turn_is_forced_whether_it_comes_late_or_never(h
     assert verdicts(scene, GAP) == [("fail", "o")]
 
 
-@pytest.mark.parametrize("period", [0.05, 0.2, 0.5, 1.0])
+@pytest.mark.parametrize("period", [0.05, 0.13, 0.19, 0.2, 1 / 3, 0.5, 1.0])
 def test_at_every_rate(period: float) -> None:
     scene = turning(period=period, at=8.0)
     assert forced(scene)[0]["decel_mps2"] > 4

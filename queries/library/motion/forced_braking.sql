@@ -41,7 +41,8 @@ clock_second_to_search AS (
     SELECT drive_id, object_id, t_ns // 1_000_000_000 - d.i FROM head_on_stop CROSS JOIN range(2 * conflict_ns() // 1_000_000_000) AS d(i)
 ),
 -- occasion: clock_second_to_search
--- Mean deceleration over the half second before each sample, or over one sample period if that is longer.
+-- Mean deceleration over the half second before each sample, or over one sample period if that is longer. If the periods do not add up to
+-- half a second, it is over as many as fit. A window that the start of the track cuts off does not count.
 slowing_sample AS MATERIALIZED (
     SELECT *, (earlier.speed_mps - speed_mps) / ((t_ns - earlier.t_ns) / 1e9) AS decel_mps2
     FROM (
@@ -55,8 +56,8 @@ slowing_sample AS MATERIALIZED (
             w AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns),
             half_second AS (PARTITION BY s.drive_id, s.actor_id ORDER BY s.t_ns RANGE BETWEEN 500_000_000 PRECEDING AND CURRENT ROW)
     )
-    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM _ego_clock GROUP BY drive_id) USING (drive_id)
-    WHERE t_ns - earlier.t_ns BETWEEN 400_000_000 AND greatest(max_gap_ns, 500_000_000)
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns, max(period_ns) AS period_ns FROM _ego_clock GROUP BY drive_id) USING (drive_id)
+    WHERE t_ns - earlier.t_ns BETWEEN least(400_000_000, 500_000_000 - 1.1 * period_ns) AND greatest(max_gap_ns, 500_000_000)
         AND (earlier.speed_mps - speed_mps) / ((t_ns - earlier.t_ns) / 1e9) > gentle_mps2()
 ),
 braking_sample AS (
