@@ -16,7 +16,7 @@
 -- The *_error columns are error bounds. The bound is the greatest of three values. First, three times the mean standard error of the slopes
 -- over two seconds (the deviation of the samples from their lines: short when the motion changes, constant in noise). Second, twice the
 -- greatest standard error nearby. Third, the contradiction by another measurement of the same motion: positions for the acceleration,
--- course for the yaw rate. It is NULL if there are too few samples.
+-- course for the yaw rate. Where the value itself is NULL, its bound means nothing.
 --
 -- For an ego that was measured by the sensors of another vehicle, the bound is at least the effect of a position error of 0.1 m, or of a
 -- speed that contradicts the positions. The values of such an ego are not trusted if it accelerates faster than an engine can, or within a
@@ -37,8 +37,8 @@ CREATE TABLE ego_motion (
     jerk_1s_mps3 DOUBLE,              -- mean jerk over the 1 s that ends at this step {velocity}
     accel_peak_mps2 DOUBLE NOT NULL,  -- how much further from zero the true longitudinal acceleration may be (also when braking), because the filter flattens peaks {velocity}
     lat_peak_mps2 DOUBLE NOT NULL,    -- how much further from zero the true lateral acceleration may be, as accel_peak_mps2 {velocity}
-    accel_error_mps2 DOUBLE,          -- error bound of the longitudinal acceleration, from the scatter of the speeds or a contradiction by the positions; NULL: too few samples {velocity}
-    lat_error_mps2 DOUBLE,            -- error bound of the lateral acceleration, from the scatter of the headings or a contradiction by the course; NULL: too few samples {velocity}
+    accel_error_mps2 DOUBLE,          -- error bound of the longitudinal acceleration, from the scatter of the speeds or a contradiction by the positions; without meaning where accel_mps2 is NULL {velocity}
+    lat_error_mps2 DOUBLE,            -- error bound of the lateral acceleration, from the scatter of the headings or a contradiction by the course; without meaning where lat_accel_mps2 is NULL {velocity}
     jerk_error_mps3 DOUBLE,           -- error bound of the jerk {velocity}
     jerk_1s_error_mps3 DOUBLE         -- error bound of the mean jerk over 1 s {velocity}
 );

@@ -5,7 +5,7 @@
 CREATE TABLE forced_braking (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    object_id VARCHAR NOT NULL,       -- another actor that slowed by more than 1.5 m/s2 (mean over 0.5 s, or one period). Its path led at more than 20 degrees onto ground that the ego took first, see conflict. It began to brake at most 4 s before the ego was there; or earlier, if it came head on (within 30 degrees) and stood before the ego left (while the ego was out in the opposing lane, also after gentle braking). At its earlier speed it would have come there within 4 s of the ego: on its driven path, and straight on from its end
+    object_id VARCHAR NOT NULL,       -- another actor that slowed by more than 1.5 m/s2 (mean over 0.5 s, or one period). Its path led at more than 20 degrees onto ground that the ego took first, see conflict. It began to brake at most 4 s before the ego was there; or earlier, if it came head on (within 30 degrees) and stood before the ego left (while the ego was out in the opposing lane, also after gentle braking). At its earlier speed it would have come there within 4 s of the ego, and within 8 s after it began to brake: on its driven path, and straight on from its end
     actor_class VARCHAR,              -- [actor_class] see actor {class}
     t_from_ns BIGINT NOT NULL,        -- time at which the object begins to brake {position}
     t_to_ns BIGINT NOT NULL,          -- last sample at which the object still brakes {position}

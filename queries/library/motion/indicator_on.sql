@@ -7,7 +7,7 @@ CREATE TABLE indicator_on (
     side VARCHAR NOT NULL,            -- [side]
     t_on_ns BIGINT NOT NULL,          -- first step with the indicator on; at the step before, it was off or on the other side
     t_off_ns BIGINT NOT NULL,         -- last step with the indicator on
-    at_log_start BOOLEAN NOT NULL     -- the indicator was on when the log began: t_on_ns is not its start
+    at_log_start BOOLEAN NOT NULL     -- the state at the step before is not known, as at the log's start or after a hole: t_on_ns may not be its start
 );
 
 INSERT INTO indicator_on BY NAME

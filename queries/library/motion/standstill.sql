@@ -31,7 +31,7 @@ CREATE TABLE standstill (
     blocking_gap_m DOUBLE,            -- the least gap from the ego to this vehicle {position, heading, size}
     blocking_speed_mps DOUBLE,        -- speed of this vehicle at that gap {velocity}
     blocking_known BOOLEAN NOT NULL,  -- it is known at every step which vehicle is ahead, see lead {position}
-    idle_ns BIGINT NOT NULL,          -- lower bound of the time for which the ego stood without an actor in its way within 10 m that stood or moved up at 1 m/s or less, see in_way {velocity}
+    idle_ns BIGINT NOT NULL,          -- lower bound of the longest time for which the ego stood on without an actor in its way within 10 m that stood or moved up at 1 m/s or less, see in_way {velocity}
     idle_at_most_ns BIGINT NOT NULL   -- upper bound of that time: it includes the time in which this is not known {velocity}
 );
 
