@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
+from tests.scenes import Road, derived, drive, judged, moving, road, rows, standing, times
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -74,16 +74,6 @@ def test_what_is_within_the_blur_is_unknown() -> None:
 
 
 @pytest.mark.parametrize("rate", RATES)
-def test_the_blur_is_what_the_cubic_may_miss(rate: float) -> None:
-    found = between(crossing(rate, 0.0, phase=0.5 / rate))
-    if rate == 1.0:
-        (row,) = found
-        assert row["blur_m"] == pytest.approx(2 * 8 / 16)
-        assert row["least_m"] == pytest.approx(-3.3, abs=0.03)
-        assert (row["t_ns"], row["t_next_ns"]) == (3_500_000_000, 4_500_000_000)
-
-
-@pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 def test_oncoming_in_its_own_lane_or_in_the_egos(hand: str, rate: float) -> None:
     way = road(((600.0, 0.0),), hand)
@@ -125,14 +115,6 @@ def test_a_hole_is_no_step() -> None:
     ego, other = moving("ego", line(), t, 15 * (t - 4), 0.0), moving("o", line(math.pi / 2), t, 15 * (t - 4), 0.0)
     assert not between(drive([ego, other], None))
     assert verdict(drive([ego, other], None)) == ["unknown"]
-
-
-def test_velocities_that_contradict_the_way_widen_the_blur() -> None:
-    t = times(8.0, period=1.0) + 0.5
-    ego, other = moving("ego", line(), t, 15 * (t - 4), 0.0), moving("o", line(math.pi / 2), t, 15 * (t - 4), 0.0)
-    wrong = Actor(**{**other.__dict__, "vy": other.vy + 9.0})
-    (row,) = between(drive([ego, wrong], None))
-    assert row["blur_m"] == pytest.approx(8 / 16 + 8 / 8)
 
 
 @pytest.mark.ci

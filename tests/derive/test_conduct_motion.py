@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, Actor, derived, drive, moving, road, rows, times
+from tests.scenes import Actor, derived, drive, rows, times
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -89,14 +89,6 @@ def test_the_jerk_does_not_depend_on_the_rate(seed: int) -> None:
     assert np.abs(found[0.2] - found[0.05])[whole].max() < 0.12 * most
 
 
-def test_reversing_is_negative_and_turns_the_other_way_round() -> None:
-    """Backwards with the heading turning left, the ego is pushed to its right."""
-    t = times(3.0)
-    found = columns(free(t, np.full(t.shape, -2.0), 0.3 * t))
-    assert set(np.round(found["v_long_mps"], 9)) == {-2.0}
-    assert found["lat_accel_mps2"][15] == pytest.approx(-0.6)
-
-
 def test_a_spike_is_smoothed_and_not_hidden() -> None:
     t = times(3.0, period=0.05)
     speed = np.full(t.shape, 10.0)
@@ -132,45 +124,6 @@ def test_what_is_not_known_in_the_window_leaves_it_unknown(lost: str) -> None:
     # the mean over two seconds needs its ends
     unknown = {round(x, 1) for x in t[(t > 1.95) & ~np.isfinite(found["accel_2s_mps2"])]}
     assert unknown == {3.0, 5.0}
-
-
-@pytest.mark.parametrize(("period", "told"), [(0.2, True), (0.25, False), (1.0, False)])
-def test_a_log_too_slow_for_it_tells_no_acceleration(period: float, told: bool) -> None:
-    t = times(12.0, period=period)
-    found = columns(free(t, 10 + t, np.zeros(t.shape)))
-    assert found["v_long_mps"] == pytest.approx(10 + t)
-    for name in COLUMNS[1:]:
-        assert np.isfinite(found[name]).any() == told, name
-
-
-def test_each_ego_has_its_own() -> None:
-    way = road()
-    t = times(4.0)
-    a = moving("a", way, t, 100 + 10 * t + t**2, way.own)
-    b = moving("b", way, t, 200 + 10 * t - t**2, way.own + LANE)
-    one = columns(a, b, egos=("a", "b"), ego="a")["accel_mps2"]
-    two = columns(a, b, egos=("a", "b"), ego="b")["accel_mps2"]
-    assert one[5:-5] == pytest.approx(2.0)
-    assert two[5:-5] == pytest.approx(-2.0)
-
-
-def test_a_blow_turns_nobody_round() -> None:
-    """Thrown back for one sample it still goes where it is turned; going back for a second it reverses."""
-    way, t = road(((1000.0, 0.0),)), times(10.0)
-    ego = moving("ego", way, t, 100 + 8 * t, way.own)
-
-    def turned(n: int) -> int:
-        back = (np.arange(len(t)) >= 50) & (np.arange(len(t)) < 50 + n)
-        other = moving("b", way, t, 400 - 6 * t, way.other)
-        struck = replace(other, vx=np.where(back, -0.5 * other.vx, other.vx))
-        found = rows(
-            derived(drive([ego, struck], way.environment), tables=["state_dynamics"]),
-            "FROM state_dynamics ORDER BY t_ns",
-        )
-        return sum(abs(row["travel_rad"]) < 1.0 for row in found if row["actor_id"] == "b")
-
-    assert turned(1) == 0
-    assert turned(10) == 8
 
 
 @pytest.mark.parametrize("rises", [0.5, 0.7, 1.5])

@@ -74,28 +74,6 @@ def test_how_much_of_it_is_in_the_junction(hand: str, at: float, length: float, 
     assert (row["junction_id"], row["junction_inside_m"]) == ("9", pytest.approx(inside, abs=0.01))
 
 
-@pytest.mark.parametrize(("until", "n"), [(6.3, 1), (6.0, 0)])
-def test_for_at_least_a_second(until: float, n: int) -> None:
-    way = cross()["we"]
-    assert len(stands(drive([halting(way, 100.0, until=until)], way.environment))) == n
-
-
-def test_creeping_is_not_standing() -> None:
-    way = cross()["we"]
-    t = times(20)
-    assert not stands(drive([moving("ego", way, t, 50 + 0.11 * t, way.own)], way.environment))
-    row = only(drive([moving("ego", way, t, 50 + 0.09 * t, way.own)], way.environment))
-    assert (row["begin_seen"], row["end_seen"]) == (False, False)
-
-
-def test_a_hole_parts_two() -> None:
-    way = cross()["we"]
-    ego = halting(way, 100.0)
-    one, two = stands(drive([ego.keep((ego.t_s < 7) | (ego.t_s > 8))], way.environment))
-    assert [(r["begin_seen"], r["end_seen"]) for r in (one, two)] == [(True, False), (False, True)]
-    assert two["occurrence"] == 1
-
-
 @pytest.mark.ci
 def test_an_unknown_speed_does_not_hide_it() -> None:
     """One step in two has no speed: its way stands in. Without a position either, nobody knows."""

@@ -35,15 +35,6 @@ def queue(hand: str = "rht", gap: float = 12.0, *, jolt: float = 0.5, speed: flo
     return drive([moving("ego", way, T, 100 + 5 * T, way.own), lead], way.environment)
 
 
-@pytest.mark.parametrize("actor", ["x", "ego"])
-def test_the_bounds_are_those_of_tyres_from_the_credible_velocities(actor: str) -> None:
-    found = rows(derived(doubted(queue(), actor), tables=["velocity_bound"]), "FROM velocity_bound ORDER BY t_ns")
-    assert {(row["ego_id"], row["object_id"]) for row in found} == {("ego", None if actor == "ego" else actor)}
-    for row, k in zip(found, range(15, 26), strict=True):
-        room = 12 * min(k - 14, 26 - k) / 10
-        assert (row["least_mps"], row["most_mps"]) == pytest.approx((max(0, 5 - room), 5 + room))
-
-
 @pytest.mark.parametrize(
     ("code", "span"), [("velocity_bias", (1.45, 2.55)), ("common_jolt", (2.95, 4.0)), ("common_jolt", (0, 1.05))]
 )
