@@ -113,12 +113,23 @@ def mutants_of_select(select: str) -> list[tuple[str, str]]:
     """Return the mutants of a table's SELECT as (fault, SELECT): comparisons reversed, and thresholds times 0.9 and 1.1."""
     seen: Counter[str] = Counter()
     found: list[tuple[str, str]] = []
-    tree = syntax_tree(select)
+    tree = _with_inner_for_cross_joins(syntax_tree(select))
     for node_path, node in _deciding_nodes(tree["statements"][0]["node"]):
         for fault, changed in _trees_with_other_values(tree, node_path, node):
             seen[fault] += 1
             found.append((fault if seen[fault] == 1 else f"{fault} #{seen[fault]}", _tree_sql(changed)))
     return found
+
+
+def _with_inner_for_cross_joins(part: Any) -> Any:
+    """Return a tree with `INNER JOIN ... ON true` for CROSS JOIN: DuckDB prints a comma, which binds less tightly than the next JOIN."""
+    if isinstance(part, list):
+        return [_with_inner_for_cross_joins(item) for item in part]
+    if not isinstance(part, dict):
+        return part
+    is_cross_join = part.get("type") == "JOIN" and part.get("ref_type") == "CROSS"
+    inner = {"ref_type": "REGULAR", "condition": _parse_expression("true")} if is_cross_join else {}
+    return {key: _with_inner_for_cross_joins(value) for key, value in (part | inner).items()}
 
 
 def _with_section(rule: Rule, name: str, sql: str) -> Rule:
