@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.casefile import Case, judge_case, read_cases
+from drivelint.casefile import Case, is_same_value, judge_case, read_cases
 from drivelint.casefile.scene import complete_scene, refuse_wrong_word
 from drivelint.errors import RuleError
 from drivelint.sql import declarations
@@ -109,3 +109,11 @@ def test_ids_and_texts_are_free(tmp_path: Path) -> None:
     }
     scene = complete_scene(measured(tmp_path), given, ())
     assert scene["pair"][0]["object_id"] == "cyclist"
+
+
+def test_an_infinite_value_agrees_only_with_the_same_infinite_value() -> None:
+    inf = float("inf")
+    assert is_same_value(inf, inf, 1)
+    assert not is_same_value(inf, 1e300, 1)
+    assert not is_same_value(-inf, inf, 1)
+    assert not is_same_value(5, inf, 1)

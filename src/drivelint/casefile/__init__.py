@@ -33,6 +33,7 @@ import json
 import re
 from contextlib import contextmanager
 from decimal import Decimal
+from math import isinf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
@@ -315,6 +316,8 @@ def is_same_value(expected_value: Any, actual_value: Any, scale: int) -> bool:
         return bool(expected_value == actual_value)
     if scale != 1 or isinstance(actual_value, int):
         return bool(round(Decimal(str(expected_value)) * scale) == actual_value)
+    if isinf(expected_value):
+        return bool(expected_value == actual_value)
     exponent = Decimal(str(expected_value)).as_tuple().exponent
     decimals = max(2, -exponent if isinstance(exponent, int) else 2)
     return abs(float(expected_value) - float(actual_value)) <= 0.5 * 10.0**-decimals + 1e-9
