@@ -219,9 +219,9 @@ def test_a_case_that_fails_is_said_with_its_line(tmp_path: Path, cases: str, lin
 
 @pytest.mark.ci
 def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_applies(tmp_path: Path) -> None:
-    sql = "SELECT drive_id, ego_id, t_ns, object_id, speed_mps AS observed, $limit AS required FROM follower"
-    case = "\n- name: clean\n  given: {follower: {t_s: 0..1 by 0.1, lane: own, object_id: f, speed_mps: 14}}\n  expect: pass\n"
-    with_cases(measured(tmp_path, sql, {"reads": '["follower"]'}), case)
+    sql = "SELECT drive_id, ego_id, t_ns, object_id, speed_mps AS observed, $limit AS required FROM lead"
+    case = "\n- name: clean\n  given: {lead: {t_s: 0..1 by 0.1, object_id: f, speed_mps: 14}}\n  expect: pass\n"
+    with_cases(measured(tmp_path, sql, {"reads": '["lead"]'}), case)
     hint = "without @applies, an invariant about objects is judged for the actors of pair, and this case has none"
     assert hint in said_of(tmp_path)[1]
     with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass"))

@@ -59,28 +59,6 @@ def test_oncoming_in_its_lane_is_met_not_followed(hand: str) -> None:
     assert {row["follows"] for row in found} == {False}
 
 
-@pytest.mark.parametrize(("reaches_in", "follows"), [(0.4, False), (1.2, True)])
-def test_parked_at_the_edge_of_the_lane_is_passed_unless_it_is_in_the_way(reaches_in: float, follows: bool) -> None:
-    """The ego's side is 0.85 m from the edge of its lane; the parked car reaches in by less or by more than that."""
-    way = road()
-    t = times(3.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    parked = standing("x", way, t, 200, -LANE - 0.9 + reaches_in)
-    seen = "x" if follows else None
-    assert {(row["object_id"], row["follows"]) for row in following(way, ego, parked)} == {(seen, follows)}
-
-
-@pytest.mark.parametrize(("inside", "follows"), [(-0.7, False), (0.1, True)])
-def test_one_that_reaches_over_the_line_is_beside_until_its_centre_is_in(inside: float, follows: bool) -> None:
-    """`inside`: its centre past the line. At 0.1 m the two boxes are still 0.75 m apart across the lane: a motorcycle."""
-    way = road(lanes=(0, 2))
-    t = times(3.0)
-    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
-    other = moving("x", way, t, 112 + 10 * t, -LANE - inside, width=1.8 if inside < 0 else 0.8)
-    seen = "x" if follows else None
-    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other)} == {(seen, follows)}
-
-
 @HANDS
 @pytest.mark.parametrize("aside", [1.6, -1.6])
 @pytest.mark.parametrize("speed", [5.0, 9.5])
@@ -174,17 +152,6 @@ def test_a_standing_car_is_followed_until_the_ego_swerves_round_it(hand: str) ->
     assert {row["follows"] for row in straight if row["t_ns"] <= 5_000_000_000} == {True}
 
 
-@pytest.mark.parametrize("at", ["parked at the edge", "in the next lane"])
-def test_one_that_reaches_over_the_line_hides_nobody_ahead(at: str) -> None:
-    way = road(lanes=(0, 2))
-    t = times(3.0)
-    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
-    lead = moving("y", way, t, 140 + 10 * t, -1.5 * LANE)
-    parked = standing("x", way, t, 145, -2 * LANE - 0.5)
-    other = parked if at == "parked at the edge" else moving("x", way, t, 112 + 10 * t, -LANE + 0.7)
-    assert {(row["object_id"], row["follows"]) for row in following(way, ego, other, lead)} == {("y", True)}
-
-
 @pytest.mark.parametrize(("across", "seen"), [(0.2, "y"), (0.5, "x"), (-0.5, "y")])
 def test_one_that_is_about_to_come_in_the_way_is_ahead_before(across: float, seen: str) -> None:
     """0.65 m beside the ego's way and coming nearer: within three seconds at more than 0.22 m/s."""
@@ -249,18 +216,6 @@ def test_behind_one_at_the_edge_an_actor_without_a_place_may_be_in_the_way(at: f
     assert {row["follows"] for row in rows(con, "FROM following")} == {False if known else None}
 
 
-def test_one_that_cuts_in_makes_a_new_gap() -> None:
-    way = road(lanes=(0, 2))
-    t = times(8.0)
-    ego = moving("ego", way, t, 100 + 10 * t, -1.5 * LANE)
-    other = moving("x", way, t, 130 + 10 * t, -0.5 * LANE - LANE * np.clip((t - 3.0) / 2.0, 0, 1))
-    found = following(way, ego, other)
-    joins = next(k for k, row in enumerate(found) if row["object_id"] == "x")
-    assert {row["joined_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
-    assert {row["let_in_ns"] for row in found[joins:]} == {found[joins]["t_ns"]}
-    assert found[-1]["follows"] is True
-
-
 @HANDS
 def test_the_ego_that_changes_lanes_makes_a_new_gap_itself(hand: str) -> None:
     way = road(hand=hand, lanes=(0, 2) if hand == "rht" else (2, 0))
@@ -283,14 +238,6 @@ def test_somebody_without_a_place_leaves_it_open() -> None:
     open_ = {round(row["t_ns"] / 1e9, 1) for row in found if row["follows"] is None}
     assert open_ == {2.0, 2.1, 2.2, 2.3, 2.4}
     assert {row["object_id"] for row in found if row["follows"] is None} == {None}
-
-
-def test_a_wrong_way_round_wreck_in_the_lane_is_not_followed() -> None:
-    way = road()
-    t = times(3.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    found = following(way, ego, standing("x", way, t, 200, way.own, turned=math.pi))
-    assert {row["follows"] for row in found} == {False}
 
 
 @HANDS

@@ -129,19 +129,6 @@ def test_a_sample_of_another_time_is_moved_on_while_it_is_fresh() -> None:
     assert doubts == {k for k, row in found.items() if row["x_m"] is None}
 
 
-def test_an_object_is_there_from_its_first_sample_to_its_last() -> None:
-    way = road()
-    t = times(10.0)
-    ego = moving("ego", way, t, 50 + 10 * t, way.own)
-    late = moving("late", way, t, 400 - 10 * t, way.other)
-    late = late.keep((t > 2.95) & (t < 7.05) & ~((t > 4.45) & (t < 5.55)))
-    con = derived(drive([ego, late], way.environment), tables=["pair"])
-    found = rows(con, "FROM pair ORDER BY t_ns")
-    assert [round(row["t_ns"] / 1e8) for row in found] == list(range(30, 71))
-    # 4.4 s is the last sample before its hole: moved on to 4.6 s, unknown from 4.7 s to 5.5 s
-    assert [round(row["t_ns"] / 1e8) for row in found if row["x_m"] is None] == list(range(47, 56))
-
-
 def test_what_comes_the_other_way_round_a_ring_is_still_to_be_met() -> None:
     """Round a ring of 800 m it is 300 m behind the ego and 500 m ahead; towards the ego only the latter counts."""
     way = road(((800.0, 2 * math.pi / 800.0),), ring=True)
@@ -195,35 +182,6 @@ def test_the_other_leg_of_a_hairpin_is_not_beside_the_road() -> None:
     assert row["d_m"] == pytest.approx(LANE, abs=0.05)
     along = 40 + turn + 40 - way.own * math.pi - 4.8  # the ego's lane is on the outside of the turn
     assert rows(con, "FROM oncoming ORDER BY t_ns")[0]["da_m"] == pytest.approx(along, abs=0.5)
-
-
-LEADS = [
-    ("own lane, ahead", 140.0, -1.75, 0.0, 5.0, True),
-    ("own lane, behind", 60.0, -1.75, 0.0, 5.0, False),
-    ("a corner in the own lane, beside the ego's way", 140.0, -0.2 - 0.9 + 1.75, 0.0, 5.0, False),
-    ("over the line, in the ego's way", 140.0, -0.05, 0.0, 5.0, True),
-    ("beside it", 140.0, 1.75, 0.0, 5.0, False),
-    ("coming towards it", 140.0, -1.75, math.pi, 5.0, True),
-    ("parked the wrong way round", 140.0, -1.75, math.pi, 0.0, True),
-    ("on the verge", 140.0, -4.7, 0.0, 0.0, False),
-]
-
-
-@pytest.mark.parametrize(("what", "s", "d", "turned", "speed", "leads"), LEADS)
-def test_who_leads(what: str, s: float, d: float, turned: float, speed: float, leads: bool) -> None:  # noqa: PLR0917
-    way = road()
-    t = times(0.3)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    direction = -1 if turned else 1
-    other = moving("x", way, t, s + direction * speed * t, d) if speed else standing("x", way, t, s, d, turned=turned)
-    con = derived(drive([ego, other], way.environment), tables=["lead"])
-    found = rows(con, "FROM lead ORDER BY t_ns")
-    assert len(found) == len(t)
-    assert {row["object_id"] for row in found} == ({"x"} if leads else {None})
-    if leads:
-        assert [row["gap_m"] for row in found] == pytest.approx(
-            list(s - 100 - 4.8 + (direction * speed - 10) * t), abs=1e-6
-        )
 
 
 def test_the_nearest_leads_and_people_do_not() -> None:

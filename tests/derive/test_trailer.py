@@ -46,7 +46,7 @@ def test_the_trailer_is_the_ego(hand: str, kind: str | None, hitch: float, lengt
     touches = hitch < 0
     if kind == "trailer" or touches:
         assert parts(scene) == {"t": "trailer"}
-        con = derived(scene, tables=["pair", "conflict", "ego_state", "unplaced", "follower"])
+        con = derived(scene, tables=["pair", "conflict", "ego_state", "unplaced"])
         assert not rows(con, "FROM pair")
         assert not rows(con, "FROM conflict")
         for row in rows(con, "FROM ego_state"):
@@ -68,11 +68,10 @@ def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
     wide = replace(drawn("t", ego, kind="trailer"), width=3.0)
     beside = standing("beside", way, t, 150, way.own + 2.2, width=1.6)
     scene = drive([ego, wide, behind, beside], way.environment)
-    con = derived(scene, tables=["pair", "follower"])
+    con = derived(scene, tables=["pair", "ego_state"])
     assert there(con) == {"behind", "beside"}
-    assert {round(r["gap_m"], 1) for r in rows(con, "FROM follower WHERE lane = 'own' AND object_id = 'behind'")} == {
-        28.2
-    }
+    gap = "SELECT e.rear_s_m - p.front_s_m AS gap_m FROM pair p JOIN ego_state e USING (drive_id, ego_id, t_ns)"
+    assert {round(r["gap_m"], 1) for r in rows(con, f"{gap} WHERE object_id = 'behind'")} == {28.2}
     found = {row["object_id"]: row["verdict"] for row in judged([scene], rules=[CRASH])}
     assert found == {"behind": "pass", "beside": "fail"}
     # while the trailer is not placed, nobody knows

@@ -11,7 +11,7 @@ CREATE TABLE _lane_ahead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- an actor ahead that is in the running lane and not in passed_by, or that reaches into the lane and is in the ego's way or heading into it; no pedestrian or animal, and an object only if it is in the way; see lead
-    actor_class VARCHAR,              -- [actor_class] see road_user; NULL also, without a map, if it is not known whether the actor is in the ego's way {class}
+    actor_class VARCHAR,              -- [actor_class] see road_user; NULL also, without a map, if it is not known whether the actor is in the ego's way, and for an actor of unknown speed that stands in the lane or crosses it {class}
     gap_m DOUBLE,                     -- distance from bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
     speed_mps DOUBLE,                 -- speed of the actor {velocity}
     oncoming BOOLEAN,                 -- the actor heads against the corridor {position, heading, velocity}
@@ -44,7 +44,7 @@ object_ahead AS (
         abs(p.heading_diff_rad) > pi() / 2 AS oncoming, abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS across_m,
         sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad) AS ego_across_mps, sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad) AS across_mps,
         abs(p.d_m) <= p.half_width_m OR w.may_bend_m > 0 AS is_centre_in_lane, NOT in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m) AS outside,
-        w.may_bend_m > 0 AND NOT in_lane(p.d_m, p.lat_half_m - w.may_bend_m, p.half_width_m) AS is_unsure,
+        w.may_bend_m > 0 AND NOT in_lane(p.d_m, p.lat_half_m - w.may_bend_m, p.half_width_m) OR y.may_cross AND p.speed_mps IS NULL AS is_unsure,
         -- In the ego's way at this step, or soon at the present speeds across the lane. For an oncoming object, only its present position
         -- counts.
         abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
@@ -56,6 +56,9 @@ object_ahead AS (
     LEFT JOIN actor_on_junction_lane c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
     LEFT JOIN own_way_end n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.chain_id = e.chain_id
     CROSS JOIN LATERAL (SELECT coalesce(bends_otherwise_m(p.s_m - n.driven_m, e.speed_mps), 0.0) AS may_bend_m) w
+    CROSS JOIN LATERAL (
+        SELECT NOT (c.t_ns IS NULL AND (n.driven_m IS NULL OR abs(p.heading_diff_rad) > 3 * pi() / 4) OR abs(p.heading_diff_rad) < pi() / 4) AS may_cross
+    ) y
     WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - e.d_m, p.lat_half_m + e.lat_half_m) AND p.s_m > e.s_m
         AND (
             in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m)
@@ -68,7 +71,8 @@ object_ahead AS (
         )
         -- An object beside the ego's box is not ahead, even if part of it is in the lane. If the two boxes overlap, they have met.
         AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
-        AND (c.t_ns IS NULL AND (n.driven_m IS NULL OR abs(p.heading_diff_rad) > 3 * pi() / 4) OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
+        -- An actor of unknown speed stands in the lane, or crosses it.
+        AND (NOT y.may_cross OR coalesce(p.speed_mps <= standing_mps(), true))
 ),
 -- Without a map: actors that the ego would soon hit with its present curvature, or with that of a moment before, although its path passes
 -- them.
@@ -92,7 +96,7 @@ on_course AS (
     ) f
     WHERE may_be_vehicle(p.actor_class) AND p.distance_m < lost_near_m() + late_s() * e.speed_mps AND f.dx > 0
         AND ttc_s(f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad), e.speed_mps - CASE WHEN p.speed_mps > standing_mps() THEN p.speed_mps * cos(f.turn_rad) ELSE 0.0 END) < late_s()
-        AND (p.speed_mps <= standing_mps() OR cos(f.turn_rad) > cos(pi() / 4))
+        AND (coalesce(p.speed_mps <= standing_mps(), true) OR cos(f.turn_rad) > cos(pi() / 4))
 )
 -- The object's centre is in the lane, or the object is in the ego's way. A vehicle that only reaches over the line must not hide the
 -- vehicle that the ego follows.

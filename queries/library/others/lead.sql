@@ -1,5 +1,6 @@
 -- The nearest vehicle ahead of the ego in the running lane. A row without an object means that there is no vehicle. A step has no row if an
--- actor of unknown class, or without a position on the corridor, may be nearer, or if the ego itself has no position on it.
+-- object in the ego's way is nearer, if an actor of unknown class, or without a position on the corridor, may be nearer, or if the ego
+-- itself has no position on it.
 -- lifetime: part
 CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive

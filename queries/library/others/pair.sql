@@ -1,13 +1,14 @@
 -- The ego and every other actor, one row per ego step from the actor's first sample to its last. If an actor's sample has another time than
 -- the step, its position is extrapolated with its own velocity while the sample is fresh. After that, the actor is present without a
--- position. An actor that is over or under the ego's road by the log's heights has no row: the ego does not meet it there. An actor that
--- may be over or under the road has a row without a position: in plan it is on the road, but it is not known whether the ego meets it.
+-- position. An actor that is over or under the ego's road by the log's heights, or beside it on another level, has no row: the ego does not
+-- meet it there. An actor that may be over or under the road has a row without a position: in plan it is on the road, but it is not known
+-- whether the ego meets it.
 -- lifetime: part
 CREATE TABLE pair (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the ego's step
-    object_id VARCHAR NOT NULL,       -- an actor that is not part of the ego; one row per step from its first to its last sample, but none while reliable heights show it over or under the ego's road
+    object_id VARCHAR NOT NULL,       -- an actor that is not part of the ego; one row per step from its first to its last sample, but none while reliable heights show it over, under or beside the ego's road on another level
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     x_m DOUBLE,                       -- the object's box centre, x; NULL: no position (not recorded, stale, a hole in the track, or off_level) {position}
     y_m DOUBLE,                       -- the object's box centre, y {position}

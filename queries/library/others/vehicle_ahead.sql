@@ -8,7 +8,7 @@ CREATE TABLE vehicle_ahead (
     t_ns BIGINT NOT NULL,             -- the step; no row: it is not known which vehicle is ahead
     object_id VARCHAR,                -- the nearest vehicle ahead in the running lane (lead), and vehicles that the lead may hide: the nearest in the ego's way, a nearer one that is heading into it, and the nearest that comes towards the ego, in the running lane or beside it in the ego's way; NULL: no vehicle, or see known
     nearest BOOLEAN NOT NULL,         -- this vehicle is the lead, or there is none {position}
-    known BOOLEAN NOT NULL,           -- false: no vehicle is seen, or the lead is beside the ego's way, and beyond free_m an actor without a position or class may be in the way {position}
+    known BOOLEAN NOT NULL,           -- false: beyond free_m, an object in the way or an actor without a position or class may be nearer than every vehicle that is seen (nearest), or in the ego's way behind a lead that is beside it {position}
     gap_m DOUBLE,                     -- see lead {position, heading, size}
     speed_mps DOUBLE,                 -- speed of the vehicle along the lane, in either direction {velocity}
     accel_mps2 DOUBLE,                -- acceleration of the vehicle, mean over the 0.5 s up to the step; NULL: not known {velocity}

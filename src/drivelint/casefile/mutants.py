@@ -121,6 +121,11 @@ def mutants_of_select(select: str) -> list[tuple[str, str]]:
     return found
 
 
+def printed_select(select: str) -> str:
+    """Return a SELECT as DuckDB prints its syntax tree: each mutant differs from this text by one fault."""
+    return _tree_sql(_with_inner_for_cross_joins(syntax_tree(select)))
+
+
 def _with_inner_for_cross_joins(part: Any) -> Any:
     """Return a tree with `INNER JOIN ... ON true` for CROSS JOIN: DuckDB prints a comma, which binds less tightly than the next JOIN."""
     if isinstance(part, list):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import duckdb
 
-from drivelint.casefile.mutants import mutants_of_select
+from drivelint.casefile.mutants import mutants_of_select, printed_select
 from drivelint.casefile.mutation import SURVIVORS_FILE, MutationResult, read_survivors
 from drivelint.casefile.scene import case_database
 from drivelint.casefile.table_cases import FilledCases, read_table_cases, rows_difference
@@ -41,6 +41,10 @@ def judge_table_mutants(table: LibraryTable) -> MutationResult:
         try:
             if message := _first_difference(table, cases, filled, table.select):
                 raise RuleError(f"{message} (the table itself: see rules test --table {table.name})")
+            if _first_difference(table, cases, filled, printed_select(table.select)) != "":
+                raise RuleError(
+                    f"{table.path}: printed by DuckDB, the SELECT has another meaning: no mutant can be judged"
+                )
             for fault, select in mutants_of_select(table.select):
                 difference = _first_difference(table, cases, filled, select)
                 if difference is not None:  # else the mutant is no valid SQL
