@@ -63,7 +63,7 @@ def test_each_runs_after_what_it_reads(
     told: list[str] = []
     fill = derive._fill_table
 
-    def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: bool) -> int:
+    def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: Any) -> int:
         told.append(step.table)
         return fill(con, step, *types, **old)
 
@@ -82,7 +82,7 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     )
     fill = derive._fill_table
 
-    def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: bool) -> int:
+    def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: Any) -> int:
         if begins_late and step.table == "_visited_cell":
             time.sleep(0.3)
         return fill(con, step, *types, **old)
