@@ -271,10 +271,11 @@ def recreate_with_enums(
         names = sorted(set(ids))
         can_be_enum = names and not any("\0" in name for name in names)  # SQL text cannot contain NUL
         made = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
-        con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
+        # an interrupted or failed call may have left one of the two types
+        con.execute(f"CREATE OR REPLACE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
     _recreate_empty(con, tables, _id_types(max(old, default=0) + 1))
     for no in old:
-        con.execute(f"DROP TYPE drive_ids_{no}; DROP TYPE actor_ids_{no}")
+        con.execute(f"DROP TYPE IF EXISTS drive_ids_{no}; DROP TYPE actor_ids_{no}")
 
 
 def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
@@ -299,13 +300,31 @@ def _recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str], types
 def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, types: Mapping[str, str]) -> int:
     """Replace a table by the rows of a SELECT, with the declared types of its columns; return the number of rows.
 
-    `types`: those of `id_types`. One statement creates and fills the table. It does not check NOT NULL, as an INSERT does: the tests do.
+    `types`: those of `id_types`. One statement creates and fills the table. Another checks NOT NULL, as an INSERT does: it reads only
+    statistics if there is no NULL. Errors: `duckdb.ConstraintException` for NULL in a NOT NULL column.
     """
-    kinds = {column: kind.removesuffix(" NOT NULL") for column, kind in column_types()[table].items()}
+    declared = column_types()[table]
+    kinds = {column: kind.removesuffix(" NOT NULL") for column, kind in declared.items()}
     if _has_enums(table):
         kinds |= {column: kind for column, kind in types.items() if column in kinds}
     columns = ", ".join(f"{column}::{kind} AS {column}" for column, kind in kinds.items())
-    return int(con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()[0][0])
+    made = con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()
+    n_rows = int(made[0][0])
+    if n_rows:
+        _refuse_null(con, table, [column for column, kind in declared.items() if kind.endswith(" NOT NULL")])
+    return n_rows
+
+
+def _refuse_null(con: duckdb.DuckDBPyConnection, table: str, columns: Sequence[str]) -> None:
+    for column in columns if _has_null(con, table, columns) else ():
+        if _has_null(con, table, [column]):
+            raise duckdb.ConstraintException(f"NOT NULL constraint failed: {table}.{column}")
+
+
+def _has_null(con: duckdb.DuckDBPyConnection, table: str, columns: Sequence[str]) -> bool:
+    """Return whether one of the columns has NULL. Without NULL, DuckDB knows the answer from statistics and reads no row."""
+    condition = " OR ".join(f"{column} IS NULL" for column in columns) or "false"
+    return con.execute(f"SELECT 1 FROM {table} WHERE {condition} LIMIT 1").fetchone() is not None
 
 
 def id_types(con: duckdb.DuckDBPyConnection) -> dict[str, str]:
