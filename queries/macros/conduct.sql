@@ -116,6 +116,10 @@ CREATE OR REPLACE MACRO order_change_m() AS 0.25;
 -- Whether part of a box is in the running lane. d_m is the distance of its centre from the lane's centre line, lat_half_m half its extent
 -- across the lane.
 CREATE OR REPLACE MACRO in_lane(d_m, lat_half_m, half_width_m) AS abs(d_m) - lat_half_m < half_width_m - over_boundary_m();
+-- The most that a pedestrian reaches to each side of its middle: half its extent across the lane, or half its diagonal if its heading is not
+-- known.
+CREATE OR REPLACE MACRO walker_half_m(lat_half_m, length_m, width_m) AS
+    coalesce(lat_half_m, sqrt(length_m ** 2 + width_m ** 2) / 2, longest_animal_m() / 2);
 
 -- An actor whose heading is within this angle of a lane's direction follows the lane.
 CREATE OR REPLACE MACRO along_lane_rad() AS pi() / 9;

@@ -17,7 +17,7 @@ CREATE TABLE line_step (
     t_astride_ns BIGINT,              -- first step since which the box has been astride of the line, with more than 0.05 m on each side; both lanes beside the line count; NULL: not astride at this step {position}
     astride_begin_seen BOOLEAN,       -- the step before t_astride_ns exists; NULL: not astride {position}
     changes BOOLEAN,                  -- in that time, the centre crosses to the other side of the line and stays there: a lane change, or part of an overtake; NULL: the end is not seen and the ego may go back, or not astride {position}
-    overtaking BOOLEAN,               -- the ego overtakes a vehicle, or passes round a pedestrian in its lane. This counts from 10 m plus 5 s of the closing speed (at least 30 m) before that actor to the same distance after it; NULL: it may overtake, but the actor is lost meanwhile, or the overtaking side is not known {position}
+    overtaking BOOLEAN,               -- the ego overtakes a vehicle, or passes round a pedestrian in its lane. This counts from 10 m plus 5 s of the closing speed (at least 30 m) before that actor to the same distance after it; NULL: it may overtake, but the actor is lost meanwhile, or the overtaking side is not known; or the pedestrian may only reach into the lane, as its heading or size is not known {position}
     passing_id VARCHAR,               -- an actor in the running lane or on its edge that the ego passes, and that leaves too little room on this side of the line: a standing vehicle, or a cyclist or animal at up to 4.47 m/s. It counts from 10 m plus 5 s of the ego's speed (at least 30 m) ahead to 10 m plus 5 s behind; NULL: none, or in this stretch the ego overtakes a moving vehicle {position}
     passing_known BOOLEAN NOT NULL,   -- no other actor may be passed: all near actors have a position, or are out of plain view while the lane ahead is in plain view {position}
     access BOOLEAN                    -- within 30 m, the ego enters or leaves premises or a side road beyond the line. It then is off the lanes at 20 mph or less, and turns off, stands, or gets more than 10 m from the running lane's centre line. A shoulder, bay or cycle lane of the same road does not count, nor an ego that was or comes back by 0.25 m on the same lane; NULL: not known, as when it turns off and comes back the opposite way
@@ -156,12 +156,12 @@ possible_pass AS (
 -- Steps near the vehicle that the ego overtakes, or may overtake, or near a pedestrian in its lane. If that vehicle is lost meanwhile, it
 -- is not known whether the ego passed it.
 step_near_passed AS (
-    SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.is_near THEN true END) AS overtaking
+    SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.is_near AND (NOT r.is_on_foot OR in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m)) THEN true END) AS overtaking
     FROM numbered_step n
     JOIN (
         SELECT drive_id, ego_id, t0_ns, t_end_ns, vbp_id AS object_id, passed, false AS is_on_foot FROM overtake
         UNION ALL
-        SELECT drive_id, ego_id, min(t_ns), max(t_ns), object_id, true, true FROM pair WHERE is_class(actor_class, 'pedestrian') AND in_lane(d_m, lat_half_m, half_width_m) GROUP BY ALL
+        SELECT drive_id, ego_id, min(t_ns), max(t_ns), object_id, true, true FROM pair WHERE is_class(actor_class, 'pedestrian') AND in_lane(d_m, walker_half_m(lat_half_m, length_m, width_m), half_width_m) GROUP BY ALL
     ) r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.t0_ns <= n.t_ns AND r.t_end_ns >= n.t_ns
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = r.object_id
@@ -174,7 +174,7 @@ step_near_passed AS (
         ) AS is_near
     ) d
     WHERE (r.passed OR EXISTS (FROM hidden_step d WHERE d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns >= r.t0_ns AND d.t_ns <= r.t_end_ns))
-        AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, p.lat_half_m, p.half_width_m), false))
+        AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, walker_half_m(p.lat_half_m, p.length_m, p.width_m), p.half_width_m), false))
     GROUP BY ALL
 ),
 -- Actors that allow the ego to cross even a solid line, because they leave too little room on this side of it. They do not count in a
