@@ -15,7 +15,7 @@ def test_null_in_a_column_that_is_declared_not_null_is_an_error() -> None:
             NULL AS road_type, 0.0 AS off_m, NULL AS with_direction
         FROM range(3) AS r(no)"""
     with store.connect() as con:
-        with pytest.raises(duckdb.ConstraintException, match=r"NOT NULL constraint failed: ego_aside\.lane_type"):
+        with pytest.raises(duckdb.Error, match=r"NOT NULL constraint failed: ego_aside\.lane_type"):
             store.create_from_select(con, "ego_aside", select, {})
         assert store.create_from_select(con, "ego_aside", f"{select} WHERE no < 2", {}) == 2
 

@@ -300,31 +300,24 @@ def _recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str], types
 def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, types: Mapping[str, str]) -> int:
     """Replace a table by the rows of a SELECT, with the declared types of its columns; return the number of rows.
 
-    `types`: those of `id_types`. One statement creates and fills the table. Another checks NOT NULL, as an INSERT does: it reads only
-    statistics if there is no NULL. Errors: `duckdb.ConstraintException` for NULL in a NOT NULL column.
+    `types`: those of `id_types`. One statement creates, fills and checks the table: like an INSERT, it refuses NULL in a NOT NULL column.
+    Errors: `duckdb.Error`.
     """
     declared = column_types()[table]
     kinds = {column: kind.removesuffix(" NOT NULL") for column, kind in declared.items()}
     if _has_enums(table):
         kinds |= {column: kind for column, kind in types.items() if column in kinds}
-    columns = ", ".join(f"{column}::{kind} AS {column}" for column, kind in kinds.items())
+    values = dict(zip(kinds, kinds, strict=True))
+    required = [column for column, kind in declared.items() if kind.endswith(" NOT NULL")]
+    if required:
+        told = " ".join(f"WHEN {column} IS NULL THEN {quoted(column)}" for column in required)
+        failure = f"error('NOT NULL constraint failed: {table}.' || CASE {told} END)"
+        # in the outermost SELECT, which has the rows of the table only
+        wrong = " OR ".join(f"{column} IS NULL" for column in required)
+        values[required[0]] = f"CASE WHEN {wrong} THEN {failure} ELSE {required[0]} END"
+    columns = ", ".join(f"({values[column]})::{kind} AS {column}" for column, kind in kinds.items())
     made = con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()
-    n_rows = int(made[0][0])
-    if n_rows:
-        _refuse_null(con, table, [column for column, kind in declared.items() if kind.endswith(" NOT NULL")])
-    return n_rows
-
-
-def _refuse_null(con: duckdb.DuckDBPyConnection, table: str, columns: Sequence[str]) -> None:
-    for column in columns if _has_null(con, table, columns) else ():
-        if _has_null(con, table, [column]):
-            raise duckdb.ConstraintException(f"NOT NULL constraint failed: {table}.{column}")
-
-
-def _has_null(con: duckdb.DuckDBPyConnection, table: str, columns: Sequence[str]) -> bool:
-    """Return whether one of the columns has NULL. Without NULL, DuckDB knows the answer from statistics and reads no row."""
-    condition = " OR ".join(f"{column} IS NULL" for column in columns) or "false"
-    return con.execute(f"SELECT 1 FROM {table} WHERE {condition} LIMIT 1").fetchone() is not None
+    return int(made[0][0])
 
 
 def id_types(con: duckdb.DuckDBPyConnection) -> dict[str, str]:
