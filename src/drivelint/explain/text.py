@@ -167,15 +167,15 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
 def _sql_lines(explanation: Explanation) -> list[str]:
     if lacks_signal(explanation.verdict):
         return []
-    missing = {column for columns in _null_columns_by_table(explanation).values() for column in columns}
+    null_columns = {column for columns in _null_columns_by_table(explanation).values() for column in columns}
     lines = (line for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines()))
-    return [f"|{line}{_null_note(line, missing)}" for line in lines]
+    return [f"|{line}{_null_note(line, null_columns)}" for line in lines]
 
 
-def _null_note(line: str, missing: Collection[str]) -> str:
+def _null_note(line: str, null_columns: Collection[str]) -> str:
     """Return a comment for the end of a line of SQL that names columns without a value; '' for another line."""
     code = "" if line.lstrip().startswith("GROUP BY") else line.partition("--")[0]
-    named = sorted(column for column in missing if re.search(rf"\b{column}\b", code))
+    named = sorted(column for column in null_columns if re.search(rf"\b{column}\b", code))
     return f"  -- NULL here: {', '.join(named)}" if named else ""
 
 

@@ -230,7 +230,7 @@ def macros_page() -> str:
         about = ""
         for comment, signature in _MACRO_PATTERN.findall(file.read_text(encoding="utf-8")):
             about = " ".join(line.removeprefix("--").strip() for line in comment.splitlines()) or about
-            files.setdefault(file.stem.replace("_", " ").capitalize(), []).append((signature, about))
+            files.setdefault(file.stem, []).append((signature, about))
     return text_template(__file__, "macros.md.j2").render(files=files)
 
 
