@@ -55,8 +55,8 @@ _SECTION_BY_REASON_CODE: Final = {
     "anchor_unknown": "anchor",
     "null_value": "condition",
 }
-_NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never)(?!.*known)")
-"""Matches the comment of a column in which NULL is a known answer: there is none."""
+_NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never|the profile)(?!.*known)")
+"""Matches the comment of a column in which NULL is a known answer: there is none, or the profile `observed` has no such number."""
 _REASONS_NOT_TO_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
     "outside_conditions": "the rule applies only in other conditions",
