@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.casefile import commands, table_cases, table_mutation
+from drivelint.casefile import commands, mutation, table_cases, table_mutation
 from drivelint.errors import ExitCode, RuleError, UsageError
 from drivelint.sql.library import LibraryTable, library_tables
 
@@ -58,7 +58,9 @@ def test_rows_that_agree_pass(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("0.3: true", "0.2: true"), "expected is_on = True, got False"),
+        (("0.3: true", "0.2: true"), "expected is_on: true, got false"),
+        (("{else: false, 0.3: true}", "null"), "expected is_on: null, got false: {drive_id: d, ego_id: e, t_s: 0.1, "),
+        (("0.1..0.3 by 0.1", "[0.1, 0.2, 0.35]"), "expected t_s: 0.35, got 0.3: "),
         (("0.1..0.3", "0..0.3"), "expected 4 rows, got 3"),
         (("expect: {t_s: 0.1..0.3 by 0.1, is_on: {else: false, 0.3: true}}", "expect: []"), "expected 0 rows, got 3"),
     ],
@@ -73,7 +75,7 @@ def test_rows_that_differ_are_told(tmp_path: Path, change: tuple[str, str], mess
 def test_null_in_a_column_that_is_declared_not_null_is_told(tmp_path: Path) -> None:
     select = SELECT.replace("'automated_driving' AS mode", "NULL AS mode")
     (result,) = table_cases.run_table_cases(table(tmp_path, CASES, select))
-    assert "mode is declared NOT NULL, but is NULL: {drive_id: d, ego_id: e, t_ns: 100000000" in result.message
+    assert "mode is declared NOT NULL, but is NULL: {drive_id: d, ego_id: e, t_s: 0.1" in result.message
 
 
 def test_every_case_is_a_drive_of_its_own(tmp_path: Path) -> None:
@@ -114,7 +116,7 @@ def test_an_empty_table_of_one_case_leaves_the_rows_of_the_others(tmp_path: Path
 def test_a_table_without_cases_is_refused(tmp_path: Path) -> None:
     alone = table(tmp_path)
     table_cases.cases_file(alone).unlink()
-    with pytest.raises(RuleError, match="table ego_mode has no cases"):
+    with pytest.raises(RuleError, match="table ego_mode has no cases: write some in this file"):
         table_cases.read_table_cases(alone)
 
 
@@ -162,3 +164,21 @@ def test_commands_tell_each_table() -> None:
     assert told[1:] == ["ok   ego_aside: 3 of 3 mutants noticed", "1 table: 3 of 3 mutants noticed (100.0%)"]
     with pytest.raises(UsageError, match="did you mean 'ego_aside'"):
         commands.table_case_test(["ego_asid"], told.append)
+
+
+@pytest.mark.parametrize(
+    ("path", "name"), [("others/cut_in.sql", "cut_in"), ("others/cut_in.cases.yml", "cut_in"), ("others", "'\\*'")]
+)
+def test_who_tests_a_table_as_a_rule_is_told_how(path: str, name: str) -> None:
+    (some, *_) = library_tables().values()
+    with pytest.raises(UsageError, match=f"the library has tables, not rules: drivelint rules test --table {name}$"):
+        commands.case_test(some.path.parents[1] / path, (), print)
+
+
+def test_a_second_place_with_the_same_words_is_explained(tmp_path: Path) -> None:
+    select = SELECT.replace("speed_mps > 2.0", "speed_mps >= 0.5")
+    cases = CASES.replace("{else: false, 0.3: true}", "true")
+    said = mutation.result_text(table_mutation.judge_table_mutants(table(tmp_path, cases, select)))
+    assert "#2\n     #2 and so on: another place of the SQL with the same words\n     add a case" in said
+    once = mutation.result_text(table_mutation.judge_table_mutants(table(tmp_path)))
+    assert "#2" not in once

@@ -257,6 +257,15 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_an_unknown_names_the_section_and_the_column_without_a_value(folder: Path) -> None:
+    text = said(of(folder, "r128.back@collision"), 500)
+    decides = text[text.index("What would decide it") :]
+    assert "The SELECT below that gives no value: @anchor." in decides
+    assert "NULL in overtake (queries/library/overtakes/overtake.sql): t3_ns." in decides
+    anchor = decides[decides.index("-- @anchor") : decides.index("-- @condition")].splitlines()
+    assert [line.partition("  -- NULL here: ")[2] for line in anchor if "t3_ns" in line] == ["t3_ns", ""]
+
+
 def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     """A simulator takes the two others out of the scene and writes them on, both in one place."""
     head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()

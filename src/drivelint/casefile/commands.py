@@ -215,7 +215,11 @@ def _read_selected_rules(root: Path | None, rule_globs: Sequence[str]) -> Iterat
 
 
 def _rule_files(root: Path | None) -> Sequence[Path]:
-    """Return the rule files of a folder, or of a file of a rule or its cases. Errors: `UsageError` for another file."""
+    """Return the rule files of a folder, or of a file of a rule or its cases. Errors: `UsageError` for another file, and for a table."""
+    library = (folder("queries") / "library").resolve()
+    if root is not None and library in (root.resolve(), *root.resolve().parents):
+        name = "'*'" if root.is_dir() else _rule_file_of(root).stem
+        raise UsageError(f"{root}: the library has tables, not rules: drivelint rules test --table {name}")
     if root is None or not root.is_file():
         return rule_files(root or folder("queries") / "assertions")
     if not _rule_file_of(root).is_file():

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _SURVIVOR_ADVICE: Final = (
     "     add a case that the changed rule judges differently: for a number, with a value between the two numbers"
 )
+_PLACE_ADVICE: Final = "     #2 and so on: another place of the SQL with the same words"
 SURVIVORS_FILE: Final = "survivors.toml"
 LEAST_NOTICED_SHARE: Final = 0.95
 """The share of the mutants of stable rules that must be noticed, even if survivors are listed."""
@@ -103,6 +104,7 @@ def result_text(result: MutationResult) -> str:
         [
             f"{'ok  ' if result.ok else 'FAIL'} {result.rule_id}: {result.problem or noticed}",
             *(f"     no case notices: {fault}" for fault in result.unlisted_survivors),
+            *([_PLACE_ADVICE] if any(" #" in fault for fault in result.unlisted_survivors) else []),
             *([_SURVIVOR_ADVICE] if result.unlisted_survivors else []),
             *(f"     listed in {SURVIVORS_FILE}, but noticed or gone: {fault}" for fault in result.stale_listed_faults),
         ]

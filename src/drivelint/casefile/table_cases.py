@@ -86,7 +86,9 @@ def read_table_cases(table: LibraryTable) -> list[CompleteCase]:
     """Read the cases of a table. Errors: `RuleError` with a line for each problem, or if the file is missing."""
     file = cases_file(table)
     if not file.exists():
-        raise RuleError(f"{file}:1: table {table.name} has no cases")
+        raise RuleError(
+            f"{file}:1: table {table.name} has no cases: write some in this file; CONTRIBUTING.md, 'A table', has an example"
+        )
     cases, problems = parse_cases_file(file, TableCase)
     reads = tables_read_by(table)
     complete: list[CompleteCase] = []
@@ -188,7 +190,8 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
         for column, value in wanted.items():
             is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
             if not is_same(value, row[column]):
-                return f"expected {column} = {value!r}, got {row[column]!r}: {_row_text(row)}"
+                wanted_text, got = (_cell_text(column, each) for each in (value, row[column]))
+                return f"expected {wanted_text}, got {got.partition(': ')[2]}: {_row_text(row)}"
     return ""
 
 
@@ -227,4 +230,13 @@ def _value_of_json(text: str) -> Any:
 
 
 def _row_text(row: Mapping[str, Any]) -> str:
-    return "{" + ", ".join(f"{name}: {value}" for name, value in row.items() if value is not None) + "}"
+    return "{" + ", ".join(_cell_text(name, value) for name, value in row.items() if value is not None) + "}"
+
+
+def _cell_text(column: str, value: Any) -> str:
+    """Return a column and its value as cases write them: times in seconds, words as in YAML, numbers without the noise of sums."""
+    if column.endswith("_ns") and isinstance(value, int):
+        return f"{column.removesuffix('ns')}s: {Decimal(value) / 10**9:f}"
+    if value is None or isinstance(value, bool):
+        return f"{column}: {json.dumps(value)}"
+    return f"{column}: {value:.10g}" if isinstance(value, float) else f"{column}: {value}"

@@ -20,9 +20,10 @@ from drivelint.reasons.signals import UNRECORDED_PREFIX, remedy, unknown_conditi
 from drivelint.result.text import breach_title, ego_name, replace_non_finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import declarations
+from drivelint.sql.library import library_tables
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     from rich.console import RenderableType
 
@@ -49,6 +50,13 @@ _MEANING_BY_VERDICT: Final = {
     "not_applicable": "the situation that the rule is about did not occur",
     "error": "the rule could not be run",
 }
+_SECTION_BY_REASON_CODE: Final = {
+    "reference_time_unknown": "reference",
+    "anchor_unknown": "anchor",
+    "null_value": "condition",
+}
+_NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never|the profile)(?!.*known)")
+"""Matches the comment of a column in which NULL is a known answer: there is none, or the profile `observed` has no such number."""
 _REASONS_NOT_TO_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
     "outside_conditions": "the rule applies only in other conditions",
@@ -148,6 +156,7 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
             "remedy": remedy(row["reason_code"], row["object_id"], explanation.drive["format"], explanation.asks),
             "unknown": [step.t_ns for step in explanation.series if step.holds is None],
             "events": EVENTS,
+            "null_sentences": _null_sentences(explanation),
             "sql": "\n".join(explanation.sql.values()),
         }
     )
@@ -158,7 +167,41 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
 def _sql_lines(explanation: Explanation) -> list[str]:
     if lacks_signal(explanation.verdict):
         return []
-    return [f"|{line}" for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
+    null_columns = {column for columns in _null_columns_by_table(explanation).values() for column in columns}
+    lines = (line for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines()))
+    return [f"|{line}{_null_note(line, null_columns)}" for line in lines]
+
+
+def _null_note(line: str, null_columns: Collection[str]) -> str:
+    """Return a comment for the end of a line of SQL that names columns without a value; '' for another line."""
+    code = "" if line.lstrip().startswith("GROUP BY") else line.partition("--")[0]
+    named = sorted(column for column in null_columns if re.search(rf"\b{column}\b", code))
+    return f"  -- NULL here: {', '.join(named)}" if named else ""
+
+
+def _null_columns_by_table(explanation: Explanation) -> dict[str, list[str]]:
+    """Return, for an unknown verdict, table -> columns that the rule's SQL names and that are not known in a row that is shown."""
+    if explanation.verdict["verdict"] != "unknown" or lacks_signal(explanation.verdict):
+        return {}
+    sql = "\n".join(explanation.sql.values())
+    found: dict[str, list[str]] = {}
+    for table, rows, *_ in explanation.rows:
+        comments = declarations.column_comments().get(table, {})
+        empty = dict.fromkeys(column for row in rows for column, value in row.items() if value is None)
+        named = [c for c in empty if re.search(rf"\b{c}\b", sql) and not _NULL_MEANS_NONE.search(comments.get(c, ""))]
+        if named:
+            found[table] = named
+    return found
+
+
+def _null_sentences(explanation: Explanation) -> list[str]:
+    """Return which section of the rule has no value, and for each table its columns that are not known, with the file that fills it."""
+    section = _SECTION_BY_REASON_CODE.get(explanation.verdict["reason_code"])
+    first = [f"The SELECT below that gives no value: @{section}."] if section in explanation.sql else []
+    return first + [
+        f"NULL in {table}{f' ({library_tables()[table].short_path})' if table in library_tables() else ''}: {', '.join(columns)}."
+        for table, columns in _null_columns_by_table(explanation).items()
+    ]
 
 
 def _lines_on_row(explanation: Explanation, table: str, row: Row) -> list[str]:

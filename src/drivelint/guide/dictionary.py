@@ -159,7 +159,7 @@ def _table_facts(
     join_names: Callable[[Iterable[str]], str],
     quote: str = "",
 ) -> list[str]:
-    """Return sentences about a table: how long it is kept, the result file to which it is written, and which tables and rules read it.
+    """Return sentences about a table: how long it is kept, the files to which it is written and by which it is filled, and its readers.
 
     The tables that it reads are named too.
     `join_names`: a function that joins names; `quote`: the mark around the file name.
@@ -167,6 +167,8 @@ def _table_facts(
     sentences = [f"Kept {_LIFETIME_WORDS[lifetimes()[name]]}."]
     if files := [stem for stem, of in {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE}.items() if of == name]:
         sentences.append(f"Written to {quote}{files[0]}.parquet{quote}.")
+    if name in library_tables():
+        sentences.append(f"Filled by {quote}{library_tables()[name].short_path}{quote}.")
     if name in sources_by_table:
         sentences.append(
             f"Reads {join_names(sources_by_table[name])}." if sources_by_table[name] else "Reads no table."
@@ -228,7 +230,7 @@ def macros_page() -> str:
         about = ""
         for comment, signature in _MACRO_PATTERN.findall(file.read_text(encoding="utf-8")):
             about = " ".join(line.removeprefix("--").strip() for line in comment.splitlines()) or about
-            files.setdefault(file.stem.replace("_", " ").capitalize(), []).append((signature, about))
+            files.setdefault(file.stem, []).append((signature, about))
     return text_template(__file__, "macros.md.j2").render(files=files)
 
 

@@ -330,7 +330,8 @@ def _unknown_reason_lines(result: Result) -> list[Text]:
     lines = []
     for group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
-        words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
+        rules = group[0]["rule_id"] if n_rules(group) == 1 else plural(n_rules(group), "rule")
+        words = f"{group[0]['verdict']} ({rules}{times}): {group[0]['reason']}"
         lines.append(Text(words, "yellow"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))

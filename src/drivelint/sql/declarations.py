@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import Final
 
 from drivelint.errors import DriveLintError
 from drivelint.resources import folder
 from drivelint.sql import words
-from drivelint.sql.library import library_tables
+from drivelint.sql.library import TABLE_LIFETIMES, library_tables
 
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
-TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
-"""How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
-one part of a drive are judged. `run`: until the end of the run."""
 _COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
 _QUANTITIES = re.compile(r"\{([a-z, ]+)\}$")
 """Matches the end of a column's comment: the quantities, of the ego or another actor, from which the column is computed."""

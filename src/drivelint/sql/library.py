@@ -17,9 +17,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _FILE: Final = re.compile(
-    r"\A((?:--(?! lifetime:)[^\n]*\n)+)(-- lifetime: \w+\nCREATE TABLE (\w+) \(\n.*?^\);\n)\nINSERT INTO (\w+) BY NAME\n(.+)\Z",
+    r"\A((?:--(?! lifetime:)[^\n]*\n)+)(-- lifetime: (\w+)\nCREATE TABLE (\w+) \(\n.*?^\);\n)\nINSERT INTO (\w+) BY NAME\n(.+)\Z",
     re.DOTALL | re.MULTILINE,
 )
+
+
+TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
+"""How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
+one part of a drive are judged. `run`: until the end of the run."""
+_UNCOMMENTED_COLUMN: Final = re.compile(r"^    (\w+) (?!.* -- \S)", re.MULTILINE)
 
 
 class LibraryTable(NamedTuple):
@@ -54,10 +60,19 @@ def library_tables() -> dict[str, LibraryTable]:
 
 def _read_file(file: Path) -> LibraryTable:
     found = _FILE.match(file.read_text(encoding="utf-8"))
-    if found is None or not found[3] == found[4] == file.stem:
+    if found is None or not found[4] == found[5] == file.stem:
         raise DriveLintError(
-            f"{file}: write a comment, `-- lifetime: ...`, `CREATE TABLE {file.stem} (`, `);`, an empty line, "
+            f"{file}: write a comment, `-- lifetime: part`, `CREATE TABLE {file.stem} (`, `);`, an empty line, "
             f"`INSERT INTO {file.stem} BY NAME` and a SELECT"
         )
+    if found[3] not in TABLE_LIFETIMES:
+        known = ", ".join(TABLE_LIFETIMES)
+        raise DriveLintError(
+            f"{file}: no lifetime {found[3]!r}: known are {known}; a table of a SELECT on the egos' steps has part"
+        )
+    if bare := _UNCOMMENTED_COLUMN.search(found[2]):
+        raise DriveLintError(
+            f"{file}: column {bare[1]} has no comment: write `-- ` and what it is after it, on the same line"
+        )
     description = " ".join(line.removeprefix("--").strip() for line in found[1].splitlines())
-    return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[5])
+    return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[6])

@@ -1,0 +1,61 @@
+"""What is wrong with the file of a library table is told with the file and what to write."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from drivelint.errors import DriveLintError
+from drivelint.sql import library
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FILE = """-- The steps at which the ego stands.
+-- lifetime: part
+CREATE TABLE standing (
+    drive_id VARCHAR NOT NULL,        -- the drive
+    t_ns BIGINT NOT NULL              -- the step
+);
+
+INSERT INTO standing BY NAME
+SELECT drive_id, t_ns FROM ego_state WHERE speed_mps < 0.1
+"""
+
+
+def read(folder: Path, monkeypatch: pytest.MonkeyPatch, change: tuple[str, str]) -> library.LibraryTable:
+    """Read a library that has this one file, with a change of its text."""
+    (folder / "library" / "motion").mkdir(parents=True)
+    (folder / "library" / "motion" / "standing.sql").write_text(FILE.replace(*change), encoding="utf-8")
+    monkeypatch.setattr(library, "folder", lambda _: folder)
+    library.library_tables.cache_clear()
+    try:
+        return library.library_tables()["standing"]
+    finally:
+        library.library_tables.cache_clear()
+
+
+def test_the_parts_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = read(tmp_path, monkeypatch, ("", ""))
+    assert (table.topic, table.description) == ("motion", "The steps at which the ego stands.")
+    assert table.declaration.startswith("-- lifetime: part\nCREATE TABLE standing (\n")
+    assert table.select.startswith("SELECT drive_id, t_ns FROM ego_state")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("-- lifetime: part\n", ""), "write a comment, `-- lifetime: part`, `CREATE TABLE standing (`"),
+        (("INSERT INTO standing", "INSERT INTO stands"), "write a comment, `-- lifetime: part`, "),
+        (("lifetime: part", "lifetime: step"), "no lifetime 'step': known are map, drive, part, run; "),
+        (("        -- the drive", ""), "column drive_id has no comment: write `-- ` and what it is after it"),
+        (("              -- the step", ""), "column t_ns has no comment: "),
+    ],
+)
+def test_what_is_missing_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: tuple[str, str], message: str
+) -> None:
+    with pytest.raises(DriveLintError) as refused:
+        read(tmp_path, monkeypatch, change)
+    assert str(refused.value).startswith(f"{tmp_path / 'library' / 'motion' / 'standing.sql'}: {message}")
