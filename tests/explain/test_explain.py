@@ -256,9 +256,11 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert "?" in text[text.index("Margin over time") :]
 
 
-@pytest.mark.slow
-def test_an_unknown_names_the_section_and_the_column_without_a_value(folder: Path) -> None:
-    text = said(of(folder, "r128.back@collision"), 500)
+@pytest.mark.ci
+def test_an_unknown_names_the_section_and_the_column_without_a_value(tmp_path: Path) -> None:
+    traces = (str(OVERTAKE / "collision.csv"),)
+    check(tmp_path, traces=traces, rules=("ukhc.r128.back-before-solid",), profiles=("nominal",), params=())
+    text = said(of(tmp_path, "r128.back@collision"), 500)
     decides = text[text.index("What would decide it") :]
     assert "The SELECT below that gives no value: @anchor." in decides
     assert "NULL in overtake (queries/library/overtakes/overtake.sql): t3_ns." in decides
@@ -266,6 +268,7 @@ def test_an_unknown_names_the_section_and_the_column_without_a_value(folder: Pat
     assert [line.partition("  -- NULL here: ")[2] for line in anchor if "t3_ns" in line] == ["t3_ns", ""]
 
 
+@pytest.mark.slow
 def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     """A simulator takes the two others out of the scene and writes them on, both in one place."""
     head, *lines = (OVERTAKE / "near_miss.csv").read_text(encoding="utf-8").splitlines()

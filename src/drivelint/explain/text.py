@@ -55,8 +55,8 @@ _SECTION_BY_REASON_CODE: Final = {
     "anchor_unknown": "anchor",
     "null_value": "condition",
 }
-_NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never|the profile)(?!.*known)")
-"""Matches the comment of a column in which NULL is a known answer: there is none, or the profile `observed` has no such number."""
+_NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never)(?!.*known)")
+"""Matches the comment of a column in which NULL is a known answer: there is none."""
 _REASONS_NOT_TO_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
     "outside_conditions": "the rule applies only in other conditions",
@@ -189,7 +189,7 @@ def _null_columns_by_table(explanation: Explanation) -> dict[str, list[str]]:
         comments = declarations.column_comments().get(table, {})
         empty = dict.fromkeys(column for row in rows for column, value in row.items() if value is None)
         named = [c for c in empty if re.search(rf"\b{c}\b", sql) and not _NULL_MEANS_NONE.search(comments.get(c, ""))]
-        if named:
+        if named and table != "profile":  # the numbers of a profile are chosen, not recorded
             found[table] = named
     return found
 
