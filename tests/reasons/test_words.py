@@ -79,7 +79,7 @@ def test_every_shared_code_is_given_somewhere() -> None:
     given = {code for rule in catalogue.load_rules().values() for code in rule.reason_codes}
     texts = [
         file.read_text(encoding="utf-8")
-        for part in ("macros", "library", "judging")
+        for part in ("macros", "statement_macros", "library", "judging")
         for file in (folder("queries") / part).rglob("*.sql")
     ]
     named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {reason_text.PLAIN_TEXT_CODE}
