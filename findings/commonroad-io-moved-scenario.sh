@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# commonroad-io 2026.1: `Scenario.translate_rotate(translation, angle)`, which "translates and rotates all objects, e.g., obstacles and road network", as a map is
+# commonroad-io 2026.1: `Scenario.translate_rotate(translation, angle)`, which moves and turns a scenario with its road network and obstacles, as a map is
 # brought from UTM to the origin of a recording.
 #
 # Expected: map, cars and what the map answers are where they have been moved to, by an exact rotation.

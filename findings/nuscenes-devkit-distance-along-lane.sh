@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# nuscenes-devkit 1.2.0: `project_pose_to_lane` of its map expansion, "the closest pose on a lane" and "the distance along the lane for this pose", on a lane of
-# several arcline paths, as `get_arcline_path` gives them.
+# nuscenes-devkit 1.2.0: `project_pose_to_lane` of its map expansion, which gives the pose on a lane that is nearest to a car and how far along the lane it is, on a
+# lane of several arcline paths, as `get_arcline_path` gives them.
 #
 # Expected: the distance is that of the closest pose, at most half of `resolution_meters` off, and at the end of the lane it is `length_of_lane`.
 # Seen: the pose is right, the distance too long by up to two steps of the resolution for each path: it is the number of points until there times the resolution, but
