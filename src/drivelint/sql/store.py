@@ -139,7 +139,8 @@ def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection
 def interrupt(con: duckdb.DuckDBPyConnection) -> None:
     """Stop the statements that run on a connection and on its cursors; called from another thread."""
     for each in (con, *_open_cursors_by_connection_id.get(id(con), ())):
-        each.interrupt()
+        with suppress(duckdb.ConnectionException):  # its thread has closed it meanwhile
+            each.interrupt()
 
 
 def lock_down(con: duckdb.DuckDBPyConnection) -> None:
