@@ -156,6 +156,17 @@ def test_a_select_that_is_printed_with_another_meaning_has_a_problem(
     assert not found.ok
 
 
+def test_a_table_without_cases_is_no_success_of_a_glob(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    lacking = LibraryTable("ego_mode", "log", tmp_path / "ego_mode.sql", "", "", SELECT)
+    monkeypatch.setattr(
+        commands, "library_tables", lambda: {"ego_mode": lacking, "ego_aside": library_tables()["ego_aside"]}
+    )
+    told: list[str] = []
+    assert commands.table_case_test(["ego_*"], told.append) == ExitCode.USAGE
+    assert "table ego_mode has no cases" in told[0]
+    assert commands.table_mutation_test(["ego_*"], told.append) == ExitCode.FAILED
+
+
 def test_commands_tell_each_table() -> None:
     told: list[str] = []
     assert commands.table_case_test(["ego_aside"], told.append) == ExitCode.OK

@@ -17,7 +17,7 @@ import duckdb
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.binding_errors import unknown_columns
 from drivelint.casefile.scene import case_database
-from drivelint.casefile.table_cases import cases_file, run_table_cases
+from drivelint.casefile.table_cases import run_table_cases
 from drivelint.casefile.table_mutation import judge_table_mutants
 from drivelint.catalogue import read_rule
 from drivelint.catalogue.check import error_message, line_of_error
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from threading import Event
 
+    from drivelint.casefile import CaseResult
     from drivelint.catalogue import Rule
     from drivelint.sql.library import LibraryTable
 
@@ -88,18 +89,22 @@ def case_test(root: Path | None, rule_globs: Sequence[str], print_line: Say) -> 
             print_line(f"REFUSED {error}")
             code = ExitCode.USAGE
             continue
-        failed = [f"     {result.message}" for result in results if not result.ok]
-        first = f"{'FAIL' if failed else 'ok  '} {rule.id}: {len(results) - len(failed)} of {len(results)} checks"
-        print_line("\n".join([first, *failed]))
-        code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
+        code = max(code, _print_results(rule.id, results, "checks", print_line))
     return code
+
+
+def _print_results(name: str, results: Sequence[CaseResult], noun: str, print_line: Say) -> ExitCode:
+    """Print a line for a rule or table, and one for each failed case; return FAILED if a case failed."""
+    failed = [f"     {result.message}" for result in results if not result.ok]
+    first = f"{'FAIL' if failed else 'ok  '} {name}: {len(results) - len(failed)} of {len(results)} {noun}"
+    print_line("\n".join([first, *failed]))
+    return ExitCode.FAILED if failed else ExitCode.OK
 
 
 def table_case_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
     """Run the cases of the library tables, and print a line for each table and each failed case.
 
-    Return USAGE if cases cannot be used, else FAILED if a case failed. Tables without cases are skipped. Errors: `UsageError` for a name
-    that no table has.
+    Return USAGE if cases cannot be used or are missing, else FAILED if a case failed. Errors: `UsageError` for a name that no table has.
     """
     code = ExitCode.OK
     for table in _selected_tables(table_globs):
@@ -109,17 +114,14 @@ def table_case_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
             print_line(f"REFUSED {error}")
             code = ExitCode.USAGE
             continue
-        failed = [f"     {result.message}" for result in results if not result.ok]
-        first = f"{'FAIL' if failed else 'ok  '} {table.name}: {len(results) - len(failed)} of {len(results)} cases"
-        print_line("\n".join([first, *failed]))
-        code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
+        code = max(code, _print_results(table.name, results, "cases", print_line))
     return code
 
 
 def table_mutation_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
     """Judge the mutants of the library tables by their cases, and print a line for each table and each survivor.
 
-    Return FAILED if a mutant survives that is not listed. Tables without cases are skipped. Errors: as those of `table_case_test`.
+    Return FAILED if a mutant survives that is not listed, or cases are missing. Errors: as those of `table_case_test`.
     """
     results = []
     for table in _selected_tables(table_globs):
@@ -133,8 +135,7 @@ def _selected_tables(table_globs: Sequence[str]) -> list[LibraryTable]:
     for glob in table_globs:
         if not any(fnmatchcase(name, glob) for name in library_tables()):
             raise UsageError(f"--table {glob}: no library table has this name; {hint(glob, library_tables())}")
-    chosen = [t for t in library_tables().values() if any(fnmatchcase(t.name, glob) for glob in table_globs)]
-    return [table for table in chosen if len(chosen) == 1 or cases_file(table).exists()]
+    return [table for table in library_tables().values() if any(fnmatchcase(table.name, glob) for glob in table_globs)]
 
 
 def repeat_tests_on_changes(
