@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import duckdb
+import numpy as np
 import pytest
 
 from drivelint import catalogue, demo, run
+from drivelint.engine.robustness.copies import _standard_normal_draws
 from drivelint.engine.robustness.question import (
     LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING,
     N_COPIES_TO_SETTLE,
+    N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING,
     SMALL_MARGIN_BY_UNIT,
     RobustnessQuestion,
     worst_near_and_other_questions,
@@ -60,7 +65,7 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
     assert told
     far = [row for row in told.values() if row["rule_id"] != "ukhc.no-collision"]
     assert len(far) == 4
-    assert all(row["n_stays"] == row["n_copies"] in N_COPIES_TO_SETTLE[:2] for row in far)
+    assert all(row["n_stays"] == row["n_copies"] == N_COPIES_TO_SETTLE[0] for row in far)
     assert {certainty(row) for row in far} == {SURE}
     contact = told["ukhc.no-collision", None]
     assert -0.03 < contact["margin"] < 0
@@ -125,12 +130,48 @@ def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
     assert all(row["n_copies"] is None and row["n_stays"] is None for row in rows)
 
 
-def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do() -> None:
-    """For a share of all copies that is below 95 %, within a hundredth of the draws."""
-    few, most = N_COPIES_TO_SETTLE[1:]
+@cache
+def sums_of_errors(n_actors: int) -> Any:
+    """Return 400 times, for all copies, the scaled sum of the errors of some actors, which is normally distributed."""
+    most = N_COPIES_TO_SETTLE[-1]
+    return np.array(
+        [
+            sum(_standard_normal_draws(range(1, most + 1), seed, f"actor {n}").sum(axis=1) for n in range(n_actors))
+            for seed in range(400)
+        ]
+    ) / math.sqrt(3 * n_actors)
+
+
+@pytest.mark.parametrize("n_actors", [1, 2, 3])
+def test_a_few_copies_call_no_more_findings_sure_than_all_of_them_do(n_actors: int) -> None:
+    """Margins that depend on the places and clocks of some actors, and lie above 0 in a share of copies that is below 95 %.
+
+    On average over the shares, the first copies call fewer findings sure; for none of the shares many more.
+    """
+    few, _ = N_COPIES_TO_SETTLE
+    sums = sums_of_errors(n_actors)
+    more_sure_by_few = []
     for share in (0.80, 0.85, 0.90, 0.93, 0.9499):
-        by_most = sum(math.comb(most, k) * share**k * (1 - share) ** (most - k) for k in range(95, most + 1))
-        assert share**few < by_most + 0.011, share
+        keeps = sums < NormalDist().inv_cdf(share)
+        by_few = keeps[:, :few].all(axis=1)
+        by_all = keeps.mean(axis=1) >= LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
+        more_sure_by_few.append(float(by_few.mean() - by_all.mean()))
+    assert max(more_sure_by_few) < 0.07
+    assert np.mean(more_sure_by_few) < 0
+
+
+@pytest.mark.parametrize("n_actors", [1, 2, 3])
+def test_a_few_copies_call_no_more_findings_only_possible_than_all_of_them_do(n_actors: int) -> None:
+    few, _ = N_COPIES_TO_SETTLE
+    sums = sums_of_errors(n_actors)
+    more_possible_by_few = []
+    for share in (0.951, 0.96, 0.98):
+        keeps = sums < NormalDist().inv_cdf(share)
+        by_few = (~keeps[:, :few]).sum(axis=1) >= N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING
+        by_all = keeps.mean(axis=1) < LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
+        more_possible_by_few.append(float(by_few.mean() - by_all.mean()))
+    assert max(more_possible_by_few) < 0.01
+    assert np.mean(more_possible_by_few) < 0
 
 
 def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> RobustnessQuestion:
@@ -139,28 +180,25 @@ def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Robust
 
 
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
-    fewest, few, most = N_COPIES_TO_SETTLE
-    for margin in (-SMALL_MARGIN_BY_UNIT["m"], -2.0, None):
-        assert question(margin).next_copy_numbers == range(1, few + 1)
-    for margin, n in ((-5.0, fewest), (None, few)):
+    few, most = N_COPIES_TO_SETTLE
+    assert question(-SMALL_MARGIN_BY_UNIT["m"]).next_copy_numbers == range(1, few + 1)
+    for margin in (-5.0, None):
         asked = question(margin)
-        assert asked.next_copy_numbers == range(1, n + 1)
-        asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(n + 1), margin))
+        assert asked.next_copy_numbers == range(1, few + 1)
+        asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few + 1), margin))
         assert asked.is_settled
-        assert (asked.n_stays, asked.n_copies) == (n, n)
+        assert (asked.n_stays, asked.n_copies) == (few, few)
     asked = question(-5.0)
     # far from 0 in all copies but one, where it does not apply
-    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(fewest), -5.0))
+    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few), -5.0))
     assert not asked.is_settled
-    assert asked.next_copy_numbers == range(fewest + 1, few + 1)
-    asked.add_results_of_copies((0, *asked.next_copy_numbers), dict.fromkeys((0, *asked.next_copy_numbers), -5.0))
     assert asked.next_copy_numbers == range(few + 1, most + 1)
     asked.add_results_of_copies((0, *asked.next_copy_numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
 
-@pytest.mark.parametrize(("spread", "suffice"), [(0.5, True), (2.0, False)])
+@pytest.mark.parametrize(("spread", "suffice"), [(1.9, True), (2.1, False)])
 def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
     asked = question(-5.0)
     asked.add_results_of_copies(
@@ -170,9 +208,8 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
     assert asked.is_settled is suffice
 
 
-@pytest.mark.parametrize(("lost", "suffice"), [(5, False), (6, True)])
+@pytest.mark.parametrize(("lost", "suffice"), [(2, False), (3, True)])
 def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
-    """Of 100 copies, 95 must keep a finding that is sure."""
     asked = question(-2.0)
     asked.add_results_of_copies(
         (0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0)
@@ -206,7 +243,7 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
 
 
 def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
-    few, most = N_COPIES_TO_SETTLE[1:]
+    few, most = N_COPIES_TO_SETTLE
     asked = question(-5.0)
     asked.add_results_of_copies((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
     asked.add_results_of_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
@@ -223,7 +260,7 @@ def long_question() -> RobustnessQuestion:
 
 
 def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole() -> None:
-    few, most = N_COPIES_TO_SETTLE[1:]
+    few, most = N_COPIES_TO_SETTLE
     kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
     asked.add_results_of_copies((0, *asked.next_copy_numbers), kept)
@@ -241,7 +278,7 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
 
 def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
     assert LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING == certainties.LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING
-    few, _ = N_COPIES_TO_SETTLE[1:]
+    few, _ = N_COPIES_TO_SETTLE
     asked = long_question()
     asked.add_results_of_copies(
         (0, *asked.next_copy_numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few))
@@ -250,7 +287,7 @@ def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
 
 
 def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None:
-    few, most = N_COPIES_TO_SETTLE[1:]
+    few, most = N_COPIES_TO_SETTLE
     asked = question(-2.0)
     asked.is_hasty = True
     assert asked.next_copy_numbers == range(1, most + 1)
@@ -260,7 +297,7 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
 
 
 def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
-    few, most = N_COPIES_TO_SETTLE[1:]
+    few, most = N_COPIES_TO_SETTLE
     small = question(-SMALL_MARGIN_BY_UNIT["m"])
     small.add_results_of_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
     assert not small.is_settled
@@ -268,7 +305,7 @@ def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() ->
     small.add_results_of_copies((0, *range(few + 1, most + 1)), kept)
     assert (small.n_copies, small.n_stays) == (most, most - 1)
     large = question(None)
-    for numbers in (range(1, 21), range(21, few + 1)):
+    for numbers in (range(1, 11), range(11, few + 1)):
         large.add_results_of_copies((0, *numbers), dict.fromkeys((0, *numbers)))
     assert (large.n_copies, large.n_stays) == (few, few)
 

@@ -11,8 +11,8 @@ window is judged, unless so many copies lose the finding that it is only possibl
 If an ego breaks a rule several times, copies are judged for the worst finding, and for findings whose margins are as small as the errors.
 If the worst finding is only possible, the other findings of this ego and rule follow. On request, copies are judged for all findings.
 
-At most 100 copies are judged. 32 are enough if all of them keep the finding, and 20 if the margins are also far from 0. Judging ends early
-if so many copies lose the finding that it is only possible.
+At most 100 copies are judged. 20 are enough if all of them keep the finding, unless their margins are near 0. Judging ends early if so
+many copies lose the finding that it is only possible.
 """
 
 from __future__ import annotations

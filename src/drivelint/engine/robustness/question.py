@@ -17,20 +17,22 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.engine.robustness.window import Extent
 
-N_COPIES_TO_SETTLE: Final = (20, 32, 100)
+N_COPIES_TO_SETTLE: Final = (20, 100)
 """The numbers of judged copies after which a question may be settled.
 
-32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32 keep it with a probability of 3.4 %, and at
-least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of `copies`: a block has errors from the smallest to
-the largest."""
-FAR_FROM_ZERO_STANDARD_DEVIATIONS: Final = 5.0
-"""20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
+20 is the block size of `copies`: a block has errors from the smallest to the largest. They suffice if all keep the finding. If the true
+share of copies that keep it is 90 %, all of 20 keep it with a probability of 5 to 7 %, and at least 95 of 100 with 2 %; if it is 93 %, with
+15 to 19 %, and 25 % (simulated for margins that depend on 2 to 8 errors alike)."""
+N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING: Final = 3
+"""A finding that so many of the first 20 copies lose is only possible. If 96 % of copies keep it, 2 % of blocks lose so many; in 100
+copies, less than 95 then keep it with a probability of 21 %."""
+FAR_FROM_ZERO_STANDARD_DEVIATIONS: Final = 2.5
+"""If the mean of known margins is nearer to 0, 20 copies that keep the finding do not suffice: of normally distributed margins, 5 % lie
+beyond 1.6 standard deviations, and 20 margins give this ratio to a third."""
 LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING: Final = 0.95
 """A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
 SMALL_MARGIN_BY_UNIT: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
-SMALL_MARGIN_MULTIPLE_FOR_LARGER_FIRST_PASS: Final = 10.0
-"""For margins below this multiple of `SMALL_MARGIN_BY_UNIT`, 20 copies will probably not suffice."""
 
 
 @dataclass
@@ -64,49 +66,39 @@ class RobustnessQuestion:
     @property
     def is_near_threshold(self) -> bool:
         """Whether the margin is so small that errors of a decimetre may remove the finding."""
-        return self._is_margin_within(1.0)
-
-    def _is_margin_within(self, n_small_margins: float) -> bool:
         margin = self.finding["margin"]
-        return margin is not None and abs(margin) <= n_small_margins * SMALL_MARGIN_BY_UNIT.get(
-            self.rule.unit or "", 0.0
-        )
+        return margin is not None and abs(margin) <= SMALL_MARGIN_BY_UNIT.get(self.rule.unit or "", 0.0)
 
     @property
     def next_copy_numbers(self) -> range:
         """The numbers of the copies to judge next."""
-        goal = (
-            N_COPIES_TO_SETTLE[-1]
-            if self.is_hasty
-            else next((n for n in N_COPIES_TO_SETTLE if n > self.n_copies), N_COPIES_TO_SETTLE[-1])
-        )
-        return range(self.n_copies + 1, max(goal, self._n_copies_in_first_pass) + 1)
-
-    @property
-    def _n_copies_in_first_pass(self) -> int:
-        """The number of copies in the first pass: 32 if 20 will probably not suffice."""
-        return N_COPIES_TO_SETTLE[
-            self.finding["margin"] is None or self._is_margin_within(SMALL_MARGIN_MULTIPLE_FOR_LARGER_FIRST_PASS)
-        ]
+        few, most = N_COPIES_TO_SETTLE
+        return range(self.n_copies + 1, (most if self.is_hasty or self.n_copies >= few else few) + 1)
 
     @property
     def is_settled(self) -> bool:
         """Whether enough copies were judged."""
-        few, more, most = N_COPIES_TO_SETTLE
-        if self.n_copies >= most or (
-            self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) * most
-        ):
+        few, most = N_COPIES_TO_SETTLE
+        n_lost = self.n_copies - self.n_stays
+        if self.n_copies >= most or (self.ends_early and self._suffice_lost_copies(n_lost)):
             return True
-        if self.n_stays < self.n_copies or self.is_near_threshold or self.is_doubtful:
+        if n_lost or self.is_near_threshold or self.is_doubtful:
             return False
-        return self.n_copies >= (few if self._are_margins_far_from_zero else more)
+        return self.n_copies >= few and self._are_margins_far_from_zero_or_unknown
+
+    def _suffice_lost_copies(self, n_lost: int) -> bool:
+        """Return whether so many copies lose the finding that it is only possible."""
+        few, most = N_COPIES_TO_SETTLE
+        if self.n_copies <= few and n_lost >= N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING:
+            return True
+        return n_lost > (1.0 - LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) * most
 
     @property
-    def _are_margins_far_from_zero(self) -> bool:
-        """Whether the margins of the copies are far from 0."""
+    def _are_margins_far_from_zero_or_unknown(self) -> bool:
+        """Whether the margins of the copies are far from 0; True if some are not known."""
         known = [margin for margin in self.margins if margin is not None]
-        if len(known) < max(len(self.margins), N_COPIES_TO_SETTLE[0]):
-            return False
+        if len(known) < len(self.margins):
+            return True
         return abs(float(np.mean(known))) >= FAR_FROM_ZERO_STANDARD_DEVIATIONS * float(np.std(known))
 
     @property
