@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from drivelint.casefile import mutation, run_cases
+from drivelint.casefile.binding_errors import is_valid_sql
 from drivelint.casefile.mutants import mutants
 from drivelint.catalogue import Rule
 from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
@@ -145,6 +146,30 @@ def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     assert (proof.ok, proof.stale_listed_faults) == (False, ("sense > -> <=",))
     file.write_text(entry.format("x").replace("pack.rule", "pack.gone"), encoding="utf-8")
     assert mutation.unknown_rule_messages([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
+
+
+def test_a_mutant_that_is_no_valid_sql_is_not_counted(tmp_path: Path) -> None:
+    """Without a key in USING its column is ambiguous, which DuckDB refuses: no case has noticed anything."""
+    sql = """
+SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed, $limit AS required FROM ego_state e JOIN clock USING (drive_id, ego_id)"""
+    rule = with_cases(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
+    assert [fault for fault in faults(rule) if "USING" in fault] == [
+        "@condition USING without: drive_id",
+        "@condition USING without: ego_id",
+    ]
+    assert mutation.judge_mutants(rule) == mutation.MutationResult("pack.rule", True, 4, (), ())
+
+
+def test_a_join_after_a_cross_join_has_mutants_with_the_same_meaning(tmp_path: Path) -> None:
+    """DuckDB prints CROSS JOIN as a comma, behind which `e` could not be joined to."""
+    sql = """
+SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, f.factor * $limit AS required
+FROM ego_state e CROSS JOIN (SELECT 1.0 AS factor) f JOIN clock c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id"""
+    rule = with_cases(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
+    proof = mutation.judge_mutants(rule)
+    assert all(is_valid_sql(mutant.rule) for mutant in mutants(rule))
+    # its cases of one drive and one ego each are judged beside each other, so that a key that is left out is noticed
+    assert (proof.problem, proof.n, proof.n_noticed) == ("", len(faults(rule)), len(faults(rule)))
 
 
 def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from drivelint.catalogue import Rule
+
 _MAX_ERRORS: Final = 50
 _EXPLAIN: Final = "EXPLAIN "
 _NAME: Final = re.compile(rb'(?:"[^"]*"|\w+)(?:\s*\.\s*(?:"[^"]*"|\w+))*')
@@ -64,6 +66,25 @@ def unknown_columns(file: Path) -> list[str]:
     finally:
         con.execute("DROP TABLE IF EXISTS temp.reference")
     return problems
+
+
+def is_valid_sql(rule: Rule) -> bool:
+    """Return whether DuckDB can bind all SQL of a rule."""
+    defaults = {name: param.default for name, param in rule.params.items()}
+    con = _binding_database()
+    con.execute(_REFERENCE_STEP)
+    try:
+        for name in sorted(rule.sections, key=lambda each: each != "reference"):
+            names = con.extract_statements(rule.sections[name])[0].named_parameters
+            sql = with_values(rule.sections[name], {name: _literal(defaults.get(name)) for name in names})
+            con.execute(_EXPLAIN + sql)
+            if name == "reference":
+                _create_reference_table(con, sql)
+    except duckdb.ProgrammingError:
+        return False
+    finally:
+        con.execute("DROP TABLE IF EXISTS temp.reference")
+    return True
 
 
 def _create_reference_table(con: duckdb.DuckDBPyConnection, sql: str) -> None:

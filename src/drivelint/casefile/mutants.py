@@ -106,7 +106,14 @@ def _mutants_of_sql(rule: Rule) -> Iterator[Mutant]:
         tree = syntax_tree(sql)
         for place in _deciding_nodes(tree["statements"][0]["node"]):
             for fault, changed in _faulty_trees(tree, *place):
-                yield Mutant(f"@{section} {fault}", _with_section(rule, section, _tree_sql(changed)))
+                sql_of_mutant = _tree_sql(_with_inner_for_cross_joins(changed))
+                yield Mutant(f"@{section} {fault}", _with_section(rule, section, sql_of_mutant))
+
+
+def printed_rule(rule: Rule) -> Rule:
+    """Return a rule whose SQL is as DuckDB prints its syntax trees: the SQL of each mutant differs from this text by one fault."""
+    sections = {name: printed_select(sql) for name, sql in rule.sections.items()}
+    return msgspec.structs.replace(rule, id=f"{rule.id}~printed", sections=sections)
 
 
 def mutants_of_select(select: str) -> list[tuple[str, str]]:

@@ -1,7 +1,8 @@
 """Judges each mutant of a rule by the rule's cases, and counts the mutants that at least one case notices.
 
-A mutant that no case notices shows that a case is missing. If no case can notice a mutant, because it is equivalent to the rule, the
-pack's `survivors.toml` lists it: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
+A mutant that no case notices shows that a case is missing. A mutant that is no valid SQL is not counted: it proves nothing. If no case can
+notice a mutant, because it is equivalent to the rule, the pack's `survivors.toml` lists it: `[[survivor]]` with `rule` (its id), `mutant`
+(the fault as printed) and `reason`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import msgspec
 
 from drivelint.casefile import case_location, first_unexpected_merged_case, numbered_cases, read_cases
+from drivelint.casefile.binding_errors import is_valid_sql
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge_cases, mergeable_groups
-from drivelint.casefile.mutants import mutants
+from drivelint.casefile.mutants import mutants, printed_rule
 from drivelint.errors import RuleError
 from drivelint.phrases import plural
 from drivelint.toml_text import parse_toml
@@ -131,31 +133,42 @@ def judge_mutants(rule: Rule) -> MutationResult:
     survivors: tuple[str, ...] = ()
     problem = ""
     wrong = mutants(rule)
+    n = len(wrong)
     try:
         listed = tuple(
             entry.mutant for entry in read_survivors(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id
         )
-        survivors = tuple(mutant.fault for mutant in _surviving_mutants(rule, wrong))
+        survivors, n_invalid = _survivors_and_number_of_invalid_mutants(rule, wrong)
+        n -= n_invalid
     except RuleError as error:
         problem = str(error)
-    return MutationResult(rule.id, rule.status == "stable", len(wrong), survivors, listed, problem)
+    return MutationResult(rule.id, rule.status == "stable", n, survivors, listed, problem)
 
 
-def _surviving_mutants(rule: Rule, candidates: list[Mutant]) -> list[Mutant]:
+def _survivors_and_number_of_invalid_mutants(rule: Rule, candidates: list[Mutant]) -> tuple[tuple[str, ...], int]:
+    """Return the faults of the mutants that no case notices, and the number of mutants that are no valid SQL, which prove nothing."""
     cases = read_cases(rule)
     everybody = numbered_cases(rule, cases)
+    printed = printed_rule(rule)
+    n_invalid = 0
     for key, where in MERGE_KEYS.items():
         for group in mergeable_groups(everybody, key):
-            outcomes = judge([rule, *(mutant.rule for mutant in candidates)], merge_cases(group, key), group[0].params)
+            variants = [rule, printed, *(mutant.rule for mutant in candidates)]
+            outcomes = judge(variants, merge_cases(group, key), group[0].params)
             if wrong := first_unexpected_merged_case(cases, group, outcomes[rule.id]):
                 place = case_location(rule, wrong[0])
                 raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
-            candidates = [
-                mutant
-                for mutant in candidates
-                if not first_unexpected_merged_case(cases, group, outcomes[mutant.rule.id])
-            ]
-    return candidates
+            if first_unexpected_merged_case(cases, group, outcomes[printed.id]):
+                raise RuleError(f"{rule.path}: printed by DuckDB, the SQL has another meaning: no mutant can be judged")
+            survivors = []
+            for mutant in candidates:
+                outcome = outcomes[mutant.rule.id]
+                if not first_unexpected_merged_case(cases, group, outcome):
+                    survivors.append(mutant)
+                elif all(row["verdict"] == "error" for row in outcome.verdicts):
+                    n_invalid += not is_valid_sql(mutant.rule)
+            candidates = survivors
+    return tuple(mutant.fault for mutant in candidates), n_invalid
 
 
 def unknown_rule_messages(rules: Sequence[Rule]) -> list[str]:
