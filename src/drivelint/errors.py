@@ -127,6 +127,12 @@ class ChangedLogError(TraceError):
     """A log changed while it was judged, so its verdicts do not describe its present content."""
 
 
+class WorkerLostError(DriveLintError):
+    """A process that did a part of the work has died."""
+
+    exit_code = ExitCode.TEMPFAIL
+
+
 class InternalError(DriveLintError):
     """A bug of drivelint prevents the judging of one drive; the other drives are judged."""
 

@@ -24,7 +24,7 @@ from drivelint.audit.executors.local import block_ctrl_c, core_count, prepare_wo
 from drivelint.engine.default_rules import with_selectors_of_run
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
-from drivelint.errors import DriveLintError, ExitCode, InternalError
+from drivelint.errors import DriveLintError, InternalError, WorkerLostError
 from drivelint.formats.files import file_names_sizes_and_change_times
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
@@ -45,12 +45,6 @@ if TYPE_CHECKING:
 _INTERRUPTION_CHECK_PERIOD_S: Final = 0.2
 _WORKER_END_GRACE_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
-
-
-class WorkerLostError(DriveLintError):
-    """A process that judged a part of the logs has died."""
-
-    exit_code = ExitCode.TEMPFAIL
 
 
 class _PartOfLogs(NamedTuple):

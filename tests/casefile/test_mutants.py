@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,6 +12,7 @@ from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.binding_errors import is_valid_sql
 from drivelint.casefile.mutants import mutants
 from drivelint.catalogue import Rule
+from drivelint.errors import WorkerLostError
 from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
 from tests.evaluate.packs import AFTER, HOLDS, INVARIANT, write
 
@@ -176,6 +179,20 @@ def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None
     proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass")))
     assert (proof.ok, proof.n_noticed, proof.n) == (False, 0, 4)
     assert "case 'unknown': expected pass, got unknown" in proof.problem
+
+
+class RuleThatEndsTheProcess:
+    """Stands for a rule whose judging ends the process, as a lack of memory may."""
+
+    def __reduce__(self) -> Any:
+        return os._exit, (1,)
+
+
+@pytest.mark.ci
+def test_a_process_that_dies_is_an_error_and_not_waited_for() -> None:
+    rules: Any = [RuleThatEndsTheProcess()] * 4
+    with pytest.raises(WorkerLostError, match="a process that judged mutants has died"):
+        list(mutation.judge_all_mutants(rules, 2))
 
 
 @pytest.mark.slow

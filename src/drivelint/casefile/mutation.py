@@ -8,6 +8,8 @@ notice a mutant, because it is equivalent to the rule, the pack's `survivors.tom
 from __future__ import annotations
 
 import tomllib
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -17,7 +19,7 @@ from drivelint.casefile import case_location, first_unexpected_merged_case, numb
 from drivelint.casefile.binding_errors import is_valid_sql
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge_cases, mergeable_groups
 from drivelint.casefile.mutants import mutants, printed_rule
-from drivelint.errors import RuleError
+from drivelint.errors import RuleError, WorkerLostError
 from drivelint.phrases import plural
 from drivelint.toml_text import parse_toml
 
@@ -84,12 +86,21 @@ class _ListedSurvivorsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
 
 
 def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResult]:
-    """Yield the result of each rule, in order, judged in `jobs` processes."""
+    """Yield the result of each rule, in order, judged in `jobs` processes.
+
+    Errors: `WorkerLostError` if one of the processes dies: a `multiprocessing.Pool` would wait for its result forever.
+    """
     if jobs <= 1 or len(rules) < 4:
         yield from map(judge_mutants, rules)
         return
-    with get_context("spawn").Pool(min(jobs, len(rules))) as pool:  # DuckDB does not work after a fork
-        yield from pool.imap(judge_mutants, rules)
+    # DuckDB does not work after a fork
+    with ProcessPoolExecutor(min(jobs, len(rules)), get_context("spawn")) as pool:
+        try:
+            yield from pool.map(judge_mutants, rules)
+        except BrokenProcessPool as error:
+            raise WorkerLostError("a process that judged mutants has died: is there enough memory for two?") from error
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
 
 
 def noticed_share(results: Sequence[MutationResult]) -> float:
