@@ -13,7 +13,6 @@ from hypothesis import HealthCheck, settings
 from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]
 
 from tests.shared_data import ROOT
-from tests.together import chunk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,7 +47,7 @@ TOGETHER: Final = {
 FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1)}
 """Folder -> so many cases of each of its tests are quick, and so many more `ci`; others are slow, unless the test is marked `sample`."""
 LATER: Final = ROOT / "tests" / "derive"
-"""The folder of which no test is quick: to answer the scenes of fifteen files takes half a minute, however few are asked for."""
+"""The folder of which no test is quick: the statements of each scene are planned anew, which takes seconds."""
 
 
 @pytest.fixture(scope="session")
@@ -60,12 +59,11 @@ def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
 
 
 class BySharing(LoadFileScheduling):  # type: ignore[misc]
-    """Gives a worker whole files, and all that share something: answers to questions on scenes, or fixtures."""
+    """Gives a worker whole files, and all that share fixtures."""
 
     def _split_scope(self, nodeid: str) -> str:
         path = nodeid.partition("::")[0]
-        folder = path.rpartition("/")[0]
-        return chunk(ROOT / path) if folder == "tests/derive" else TOGETHER.get(folder, path)
+        return TOGETHER.get(path.rpartition("/")[0], path)
 
 
 @pytest.hookimpl(optionalhook=True)  # without pytest-xdist there is none

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -29,7 +29,6 @@ from drivelint.road.map_reader import MapSource, MapTables
 from drivelint.sql import declarations, store
 from drivelint.sql.derivations import TABLES_NEEDED_FOR_RULES_ABOUT_OTHERS, derivations, needed_derivations
 from tests.formats.opendrive import xodr
-from tests.together import Question, SceneTables, answers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -333,8 +332,6 @@ def derived(
 
     Without `con` it is one of a few that all scenes share, emptied before of all but the same maps.
     """
-    if con is None and (answer := answers.answer(Question(drives, frozenset(tables)))) is not None:
-        return cast("duckdb.DuckDBPyConnection", answer)  # it has `execute`, which is all that `rows` needs
     if con:
         clear(con)
         store.insert(con, "profile", profile_table(load_profiles(), ()))
@@ -374,10 +371,6 @@ def judged(
     order: str = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence",
 ) -> list[Row]:
     """Return the verdict rows of these batches of drives; the database keeps the results."""
-    if con is None and len(batches) == 1:
-        question = Question(tuple(batches[0]), rules=tuple(rules), profiles=tuple(profiles), order=order)
-        if (answer := answers.answer(question)) is not None:
-            return cast("list[Row]", answer)
     place = None
     if con is None:
         place = _place(one for batch in batches for one in batch)
@@ -400,9 +393,7 @@ def judged(
     return rows(con, f"SELECT * FROM verdict ORDER BY {order}")
 
 
-def rows(
-    con: duckdb.DuckDBPyConnection | SceneTables, sql: str, params: Sequence[object] | Mapping[str, object] = ()
-) -> list[Row]:
+def rows(con: duckdb.DuckDBPyConnection, sql: str, params: Sequence[object] | Mapping[str, object] = ()) -> list[Row]:
     """Return the rows of a query as dictionaries."""
     result = con.execute(sql, params or None)
     names = [column[0] for column in result.description or ()]

@@ -117,51 +117,6 @@ def cross(
     return ways
 
 
-@cache
-def star(hand: str, arms: tuple[float, ...]) -> dict[tuple[int, int], Road]:
-    """Return ways through a junction whose arms lead outward at these angles in degrees, `ARM` metres from the junction on.
-
-    Named by the numbers of the arms, from 1, that they come from and lead to.
-    """
-    rule = f'rule="{hand.upper()}"'
-    angles = [math.radians(a) for a in arms]
-
-    def shape(a: float, b: float) -> tuple[float, float]:
-        turn = math.remainder(b - a - math.pi, 2 * math.pi)
-        if abs(turn) < 1e-6:
-            return 2 * R, 0.0
-        curvature = math.tan(turn / 2) / R
-        return turn / curvature, curvature
-
-    def out(a: float, far: float) -> tuple[float, float]:
-        return far * math.cos(a), far * math.sin(a)
-
-    roads, connections, ways = [], [], {}
-    for i, a in enumerate(angles, 1):
-        link = '<predecessor elementType="junction" elementId="9"/>'
-        roads.append(xodr.road(str(i), plan(((ARM, 0.0),), (*out(a, R), a)), _BOTH, ARM, link, rule, limited(30)))
-        for j, b in enumerate(angles, 1):
-            if i == j:
-                continue
-            ways[i, j] = (*out(a, R + ARM), a + math.pi), ((ARM, 0.0), shape(a, b), (ARM, 0.0))
-            if i > j:
-                continue
-            piece, number = shape(a, b), f"{i}{j}"
-            ends = "".join(
-                f'<{kind} elementType="road" elementId="{n}" contactPoint="start"/>'
-                for kind, n in (("predecessor", i), ("successor", j))
-            )
-            pose = (*out(a, R), a + math.pi)
-            roads.append(xodr.road(number, plan((piece,), pose), _FLIPPED, piece[0], ends, rule, limited(30), "9"))
-            connections.append(
-                f'<connection id="{number}" incomingRoad="{i}" connectingRoad="{number}" contactPoint="start">'
-                '<laneLink from="1" to="-1"/><laneLink from="-1" to="1"/></connection>'
-            )
-    text = xodr.xodr(*roads, f'<junction id="9" name="star">{"".join(connections)}</junction>')
-    environment = load_map(MapSource(f"star-{hand}-{arms}.xodr", text.encode()))
-    return {name: Road(environment, pieces, start) for name, (start, pieces) in ways.items()}
-
-
 def lit(told: Drive, signal_id: str, *states: tuple[float, str | None]) -> Drive:
     """Return the drive with a light that shows each state from its time in seconds on."""
     table = told.trace.tables["signal_state"]

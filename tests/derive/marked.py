@@ -74,23 +74,6 @@ def tables(
 
 
 @cache
-def tapering() -> Road:
-    """Return 600 m of road whose outer lane narrows to nothing at 300 m and is linked to where the inner one goes on."""
-    width = f'<width sOffset="0" a="{LANE}"/><width sOffset="200" a="{LANE}" b="{-LANE / 100}"/>'
-    short = xodr.lane(-2, f'<link><successor id="-1"/></link>{width}')
-    text = xodr.xodr(
-        xodr.road(
-            geometry=plan(((600.0, 0.0),)),
-            lanes=xodr.section(0, linked(-1), short) + xodr.section(300, linked(-1)),
-            length=600.0,
-            attributes='rule="RHT"',
-            more=limited(60),
-        )
-    )
-    return Road(load_map(MapSource("tapering.xodr", text.encode())), ((600.0, 0.0),))
-
-
-@cache
 def apart(hand: str, gap: float = 0.0, centre: str = "solid", kind: str = "rural", since: float = 0.0) -> Road:
     """Return a road whose two directions are roads of their own, as city maps often have them, `gap` metres apart.
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 from tests.scenes import Actor, Road, moving, times
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from tests.scenes import Row
 
 
@@ -25,10 +23,6 @@ def east(v: float = 10.0, s0: float = -50.0, end: float = 12.0, name: str = "ego
     """Go east along y = 0; without more the centre is at the origin at 5 s."""
     t = times(end)
     return moving(name, line(), t, s0 + v * t, 0.0)
-
-
-def across(s: ArrayLike, end: float = 12.0, way: Road = NORTH, name: str = "other", **more: object) -> Actor:
-    return moving(name, way, times(end), s, 0.0, **more)
 
 
 SAME = ("t_ego_in_ns", "t_ego_out_ns", "t_object_in_ns", "t_object_out_ns", "pet_s", "pet_at_most", "angle_rad")

@@ -1,4 +1,4 @@
-"""An overtake with an oncoming car: one that is completed or aborted, and one that ends in a crash."""
+"""An overtake with an oncoming car, completed or aborted."""
 
 from __future__ import annotations
 
@@ -20,26 +20,3 @@ def scene(hand: str = "rht", end: float = 30.0, *, abort: bool = False) -> tuple
     vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
     ov = moving("ov", way, t, 590 - 9 * t, way.other)
     return way, [ego, vbp, ov]
-
-
-def crash(way: Road, then: str, start: float = 0.0) -> list[Actor]:
-    """Out at 10 s well behind the car ahead, past it at 22 m/s in 9.2 s, and into the oncoming car, which comes at 25 m/s.
-
-    `then`: the log ends there, both stand there, or the ego is drawn back into its lane. `start`: metres that the ego starts
-    nearer to the car ahead, so that it has passed it by then.
-    """
-    t = times(26.0)
-    s = 50 + 22 * t
-    out = 50 + 22 * 10.0
-    met = out + 22 * 9.2
-    d = swing(way, s, out, met + 5 if then == "back" else None)
-    ego = moving("ego", way, t, s, d)
-    vbp = moving("vbp", way, t, out + 45 - start + 17 * (t - 10), way.own)
-    ov = moving("ov", way, t, met + 3 + 25 * (19.2 - t), way.other)
-    if then == "end":
-        return [a.keep(t < 19.25) for a in (ego, vbp, ov)]
-    if then == "stand":
-        stopped = np.minimum(t, 19.2)
-        ego = moving("ego", way, t, 50 + 22 * stopped, swing(way, 50 + 22 * stopped, out, None))
-        ov = moving("ov", way, t, met + 3 + 25 * (19.2 - stopped), way.other)
-    return [ego, vbp, ov]

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from tests.scenes import Road, derived, drive, judged, moving, road, rows, standing, times
+from tests.scenes import Road, derived, drive, judged, moving, road, rows, times
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -55,73 +55,6 @@ def test_a_crash_at_a_crossing_is_found_at_every_rate(rate: float, side: float) 
     scene = crossing(rate, 0.0, side=side, phase=0.5 / rate)
     assert verdict(scene) == ["fail"]
     assert bool(between(scene)) is (rate <= 2)
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("rate", RATES)
-def test_who_comes_well_later_was_clear(rate: float, side: float) -> None:
-    """It is 10.5 m behind when the ego is at the crossing: the two are 5 m apart at the least."""
-    assert verdict(crossing(rate, 10.5, side=side, phase=0.5 / rate)) == ["pass"]
-
-
-@pytest.mark.ci
-def test_what_is_within_the_blur_is_unknown() -> None:
-    """At 1 Hz nobody can tell a metre; at 10 Hz a centimetre is left."""
-    late = 4.8 / 2 + 1.8 / 2 + 3.3  # the corners just touch
-    assert verdict(crossing(1.0, late + 0.3, phase=0.5)) == ["unknown"]
-    assert verdict(crossing(1.0, late - 0.6, phase=0.5)) == ["unknown"]
-    assert verdict(crossing(10.0, late + 0.3, phase=0.05)) == ["pass"]
-
-
-@pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_oncoming_in_its_own_lane_or_in_the_egos(hand: str, rate: float) -> None:
-    way = road(((600.0, 0.0),), hand)
-    t = times(8.0, period=1 / rate) + 0.5 / rate
-    ego = moving("ego", way, t, 300 + 20 * (t - 4), way.own)
-    for d, due in ((way.other, "pass"), (way.own, "fail")):
-        other = moving("o", way, t, 300 - 20 * (t - 4), d)
-        assert verdict(drive([ego, other], way.environment)) == [due]
-
-
-@pytest.mark.parametrize("rate", RATES)
-def test_who_follows_or_drives_beside_is_clear(rate: float) -> None:
-    way = road(((600.0, 0.0),), "rht", (1, 2))
-    t = times(8.0, period=1 / rate)
-    ego = moving("ego", way, t, 100 + 20 * t, -1.75)
-    others = [moving("b", way, t, 104 + 19 * t, -5.25), moving("f", way, t, 88 + 20 * t, -1.75)]
-    scene = drive([ego, *others], way.environment)
-    assert not between(scene)
-    assert verdict(scene) == ["pass"]
-
-
-def test_a_queue_that_creeps_and_one_that_stands_are_clear_at_one_hertz() -> None:
-    way = road()
-    t = times(10.0, period=1.0)
-    s = np.interp(t, [0, 3, 6, 10], [0, 3, 6, 6])
-    scene = drive(
-        [moving("ego", way, t, 100 + s, way.own), moving("a", way, t, 105.6 + s, way.own), standing("z", way, t, 112.0, way.own)],
-        way.environment,
-    )  # fmt: skip
-    assert verdict(scene) == ["pass"]
-
-
-@pytest.mark.ci
-def test_a_hole_is_no_step() -> None:
-    scene = crossing(1.0, 0.0, phase=0.5)
-    assert between(scene)
-    t = times(8.0, period=0.1)
-    t = t[(t < 3.55) | (t > 4.45)]
-    ego, other = moving("ego", line(), t, 15 * (t - 4), 0.0), moving("o", line(math.pi / 2), t, 15 * (t - 4), 0.0)
-    assert not between(drive([ego, other], None))
-    assert verdict(drive([ego, other], None)) == ["unknown"]
-
-
-@pytest.mark.ci
-def test_every_ego_and_every_drive_for_itself() -> None:
-    a, b = crossing(1.0, 0.0, phase=0.5), crossing(1.0, 0.4, phase=0.5, drive_id="e")
-    both = rows(derived(a, b, tables=["between_steps"]), "FROM between_steps ORDER BY drive_id")
-    assert both == between(a) + between(b)
 
 
 # ---- beside each other in no step

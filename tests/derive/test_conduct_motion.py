@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,43 +88,6 @@ def test_the_jerk_does_not_depend_on_the_rate(seed: int) -> None:
     assert np.abs(found[0.2] - found[0.05])[whole].max() < 0.12 * most
 
 
-def test_a_spike_is_smoothed_and_not_hidden() -> None:
-    t = times(3.0, period=0.05)
-    speed = np.full(t.shape, 10.0)
-    speed[30] += 1.0  # 20 m/s2 up and 20 down again, unfiltered
-    found = columns(free(t, speed, np.zeros(t.shape)))
-    assert 0.9 < np.nanmax(found["accel_mps2"]) < 2.0
-    assert np.nanmin(found["accel_mps2"]) == pytest.approx(-np.nanmax(found["accel_mps2"]))
-
-
-def test_nothing_at_the_ends_and_none_across_a_hole() -> None:
-    t = times(8.0)
-    keep = (t < 3.05) | (t > 3.95)
-    found = columns(free(t, 10 + t, np.zeros(t.shape)).keep(keep))
-    t = t[keep]
-    known = np.isfinite(found["accel_mps2"])
-    assert [round(x, 1) for x in t[~known]] == [0.0, 0.1, 2.9, 3.0, 4.0, 4.1, 7.9, 8.0]
-    assert np.isfinite(found["accel_2s_mps2"]).tolist() == ((t >= 1.99) & (t < 3.05) | (t >= 5.99)).tolist()
-    assert found["accel_mps2"][known] == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("lost", ["yaw", "vx"])
-def test_what_is_not_known_in_the_window_leaves_it_unknown(lost: str) -> None:
-    t = times(6.0)
-    ego = free(t, 10 + t, 0.1 * t)
-    gone = np.abs(t - 3.0) < 0.05
-    yaw, vx = (np.where(gone & (lost == name), np.nan, kept) for name, kept in (("yaw", ego.yaw), ("vx", ego.vx)))
-    ego = replace(ego, yaw=yaw, vx=vx)
-    found = columns(ego)
-    near = np.abs(t - 3.0) < 0.25
-    assert not np.isfinite(found["accel_mps2"][near]).any()
-    assert not np.isfinite(found["lat_accel_mps2"][near & (np.abs(t - 3.0) < 0.05)]).any()
-    assert found["accel_mps2"][(t > 0.15) & (t < 5.85) & ~near] == pytest.approx(1.0)
-    # the mean over two seconds needs its ends
-    unknown = {round(x, 1) for x in t[(t > 1.95) & ~np.isfinite(found["accel_2s_mps2"])]}
-    assert unknown == {3.0, 5.0}
-
-
 @pytest.mark.parametrize("rises", [0.5, 0.7, 1.5])
 @pytest.mark.parametrize("shape", ["pointed", "round"])
 def test_a_peak_is_not_hidden_by_the_filter(shape: str, rises: float) -> None:
@@ -147,12 +109,3 @@ def test_a_peak_is_not_hidden_by_the_filter(shape: str, rises: float) -> None:
         assert np.nanmax(seen) < 2.99
         assert np.nanmax(seen + found[peak]) >= 3.0 - 1e-6
         assert np.nanmax(seen + found[peak]) < 3.0 * (1 + 0.2 / rises)
-
-
-def test_nothing_was_flattened_where_it_does_not_stand_out() -> None:
-    """A steady acceleration, and one that grows all the while."""
-    t = times(6.0)
-    steady = columns(free(t, 5 + 2 * t, np.zeros(t.shape)))
-    assert set(np.round(steady["accel_peak_mps2"], 6)) == {0.0}
-    growing = columns(free(t, 5 + t * t, np.zeros(t.shape)))
-    assert set(np.round(growing["accel_peak_mps2"], 6)) == {0.0}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.derive.meetings import NORTH, across, east, line, mirrored, same
-from tests.scenes import Actor, Road, derived, drive, moving, rows, standing, times
+from tests.derive.meetings import NORTH, line, mirrored, same
+from tests.scenes import Actor, Road, derived, drive, moving, rows, times
 
 Row = dict[str, object]
 T = times(24)
@@ -73,34 +72,6 @@ def test_both_see_the_same(pairs: list[tuple[Actor, Actor]]) -> None:
         assert sorted(map(repr, map(mirrored, of_ego))) == sorted(map(repr, map(same, of_other)))
 
 
-def test_the_ids_do_not_matter() -> None:
-    """Merging from the side behind the other, whatever the two are called."""
-    a = moving("ego", WAYS["east"], T, 9 * T - 20, 0.0)
-    b = moving("other", WAYS["north, right to east"], T, 7 * T, 0.0)
-    (first,), (second,) = of_both(a, b), of_both(replace(a, actor_id="other"), replace(b, actor_id="ego"))
-    assert mirrored(first) == same(second)
-
-
-def test_merging_behind_somebody_counts_from_its_rear() -> None:
-    """The time between runs from when the ego's rear has left the ground over which the other turns, until the other's corner is there."""
-    a = moving("ego", WAYS["east"], T, 10 * T, 0.0)
-    b = moving("other", WAYS["north, right to east"], T, 5 * T - 5, 0.0)
-    (row,) = of_both(a, b)
-    # the corner comes to the ego's side about y = -0.9, the last of the turn at more than 20 degrees ends about x = 117
-    assert row["ego_first"]
-    assert 10.9 < row["t_ego_out_ns"] / 1e9 < 12.3  # type: ignore[operator]
-    assert row["pet_s"] == pytest.approx((row["t_object_in_ns"] - row["t_ego_out_ns"]) / 1e9, abs=0.2)  # type: ignore[operator]
-
-
-def test_who_follows_somebody_that_turns_off_does_not_cross_its_way() -> None:
-    """The ego goes straight on 1.5 s behind: its front comes where the other's tail swung over at an angle of less than 45 degrees."""
-    a = moving("ego", WAYS["east"], T, 6 * T - 9, 0.0)
-    (row,) = of_both(a, moving("other", WAYS["east, right to south"], T, 6 * T, 0.0))
-    assert row["ego_first"] is False
-    assert math.radians(20) < abs(row["angle_rad"]) < math.radians(45)  # type: ignore[arg-type]
-    assert abs(row["pet_s"]) < 0.7  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(("period", "v"), [(0.1, 20.0), (0.5, 20.0), (1.0, 30.0)])
 def test_a_slow_recorder_gives_the_same_time(period: float, v: float) -> None:
     """At 30 m/s and 1 Hz a car is never recorded on the ground that it drives over."""
@@ -110,77 +81,3 @@ def test_a_slow_recorder_gives_the_same_time(period: float, v: float) -> None:
     (row,) = of_both(a, b)
     assert row["pet_s"] == pytest.approx(11.7 - 3.3 / (v / 2) - (8.3 + 3.3 / v), abs=0.002)
     assert row["pet_at_most"] is False
-
-
-def test_who_stands_on_the_ground_for_long_leaves_it_once() -> None:
-    """The ego waits there for 14 s; the other comes 2 s after it has gone on."""
-    t = times(40)
-    s = np.interp(t, [0, 5, 19, 30], [-50, 0, 0, 55])
-    (row,) = of_both(moving("ego", line(), t, s, 0.0), moving("other", NORTH, t, 5 * (t - 22), 0.0))
-    assert row["ego_first"]
-    assert row["pet_s"] == pytest.approx(22 - 3.3 / 5 - (19 + 3.3 / 5), abs=0.02)
-    assert row["pet_at_most"] is False
-
-
-def test_who_is_struck_standing_meets_nobody_and_is_not_met() -> None:
-    t = times(12)
-    stands = standing("other", NORTH, t, 0.0, 0.0)
-    drove_before = replace(stands, y=np.where(t < 0.3, stands.y - 200, stands.y), vy=np.where(t < 0.3, 10.0, 0.0))
-    assert not of_both(east(), drove_before)
-
-
-@pytest.mark.parametrize(
-    ("cut", "at_most"),
-    [
-        ("whole", False), ("the later one begins on it", True), ("the earlier one ends on it", True), ("the later one ends on it", False),
-        ("the earlier one begins on it", False), ("the later one has a hole before it", True), ("a sample is missing before it", False),
-    ],
-)  # fmt: skip
-def test_a_track_that_is_cut_there_bounds_the_time(cut: str, at_most: bool) -> None:
-    """The ego is on it from 4.67 to 5.33 s, the other from 7.34 to 8.66 s: what was not seen can only make it less."""
-    t = times(12)
-    seen = {
-        "the later one begins on it": ("other", t > 7.55), "the earlier one ends on it": ("ego", t < 5.05),
-        "the later one ends on it": ("other", t < 8.05), "the earlier one begins on it": ("ego", t > 4.95),
-        "the later one has a hole before it": ("other", (t < 6.95) | (t > 7.55)),
-        "a sample is missing before it": ("other", (t < 7.25) | (t > 7.35)),
-    }  # fmt: skip
-    who, mask = seen.get(cut, ("ego", t >= 0))
-    both = [east(), across(-40 + 5 * t)]
-    (row,) = of_both(*(each.keep(mask) if each.actor_id == who else each for each in both))
-    assert row["pet_at_most"] is at_most
-    whole = 8 - 3.3 / 5 - (5 + 3.3 / 10)
-    if at_most:
-        assert row["pet_s"] > whole  # type: ignore[operator]
-    else:
-        assert row["pet_s"] == pytest.approx(whole, abs=1e-6)
-
-
-def test_the_same_two_meet_once_more() -> None:
-    """The other goes on round the block and crosses the ego's way again, where the ego has been driving to and fro."""
-    t = times(60)
-    s = np.interp(t, [0, 10, 30, 40, 60], [-50, 50, 50, -50, -50])
-    ego = moving("ego", line(), t, s, 0.0)
-    o = np.interp(t, [0, 8, 14, 28, 38, 60], [-40, -8, 30, 30, -30, -30])
-    found = of_both(ego, moving("other", NORTH, t, o, 0.0))
-    assert len(found) == 2
-    assert [row["ego_first"] for row in found] == [True, False]
-
-
-@pytest.mark.parametrize("turned", [math.pi, math.pi / 2, -math.pi / 3])
-@pytest.mark.parametrize("v", [1.2, 8.0])
-def test_followers_on_one_course_do_not_meet_whatever_a_heading_says(turned: float, v: float) -> None:
-    """The heading of the follower flips for two seconds: its course over ground stays."""
-    gap = 2.0 * v + 5.0
-    ego, other = (moving(name, line(), T, s0 + v * T, 0.0) for name, s0 in (("ego", 0.0), ("other", gap)))
-    ego.yaw[80:100] += turned
-    assert of_both(ego, other) == []
-
-
-@pytest.mark.parametrize("degrees", [30, 60, 180, -45])
-def test_ways_at_an_angle_meet(degrees: int) -> None:
-    """As slow as the followers, with headings that are right."""
-    heading = math.radians(degrees)
-    other = moving("other", line(heading, -16.0 * math.cos(heading), -16.0 * math.sin(heading)), T, 1.4 * T, 0.0)
-    (row,) = of_both(moving("ego", line(), T, -14.4 + 1.2 * T, 0.0), other)
-    assert row["angle_rad"] == pytest.approx(heading) or abs(degrees) == 180

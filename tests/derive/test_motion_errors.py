@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pyarrow as pa
 import pytest
 
 from tests.scenes import Actor, derived, drive, judged, rows, times
@@ -49,16 +48,6 @@ def test_scatter_is_no_harsh_acceleration_and_a_launch_is() -> None:
     assert fails(straight(launch)) >= {"comfort.nuplan", "comfort.accel-iso15622"}
 
 
-def test_a_velocity_that_the_places_contradict_is_no_harsh_acceleration() -> None:
-    steady = STILL + 8.0
-    column = 8 + np.clip(4.5 * (T - 2), 0, 5.0)
-    found = motion(straight(steady, column=column))
-    at = np.searchsorted(T, 2.5)
-    assert found["accel_mps2"][at] == pytest.approx(4.5, abs=0.01)
-    assert found["accel_error_mps2"][at] == pytest.approx(4.5, abs=0.1)
-    assert not fails(straight(steady, column=column)) & {"comfort.accel-iso15622"}
-
-
 @pytest.mark.parametrize("turns", [1, -1])
 def test_a_heading_that_turns_where_the_way_does_not_is_no_bend(turns: int) -> None:
     """The heading of an annotated box is interpolated: 30 degrees in half a second, on a straight way. Left and right."""
@@ -70,64 +59,3 @@ def test_a_heading_that_turns_where_the_way_does_not_is_no_bend(turns: int) -> N
     vx, vy = 9 * np.cos(bend), 9 * np.sin(bend)
     driven = Actor("ego", T, np.cumsum(vx) * 0.1, np.cumsum(vy) * 0.1, bend, vx, vy)
     assert "comfort.lateral" in fails(driven)
-
-
-@pytest.mark.parametrize(
-    ("sensor_range_m", "chosen", "fails_at"),
-    [
-        (None, [("egos_chosen", "somebody")], 2.8),  # ground truth
-        (50.0, [], 2.8),  # the recorder's own ego
-        (50.0, [("egos_chosen", "ego")], 2.8),  # it again, among all
-        (50.0, [("egos_chosen", "somebody")], 4.3),
-        (50.0, [("egos_chosen", None)], 4.3),
-        (50.0, [("ego_chosen", "ego")], 4.3),
-    ],
-)
-def test_whom_sensors_measured_accelerates_by_1_6_mps2_more_or_less(
-    sensor_range_m: float | None, chosen: list[tuple[str, str | None]], fails_at: float
-) -> None:
-    """nuPlan's bound is 2.4 m/s2."""
-
-    def fails_by(mps2: float) -> bool:
-        scene = drive([straight(2 + mps2 * T)], None, sensor_range_m=sensor_range_m)
-        tables, schema = scene.trace.tables, scene.trace.tables["quality"].schema
-        about = [
-            {"drive_id": "d", "check_id": check_id, "actor_id": name, "severity": "info", "message": "", "n": 1}
-            for check_id, name in chosen
-        ]
-        tables["quality"] = pa.Table.from_pylist(about, schema=schema)
-        return any(row["verdict"] == "fail" for row in judged([scene], rules=["comfort.nuplan"]))
-
-    assert fails_by(fails_at)
-    assert not fails_by(fails_at - 0.6)
-
-
-def measured(ego: Actor) -> set[str]:
-    """Return the rules of comfort that an ego breaks whom the sensors of somebody else measured."""
-    scene = drive([ego], None, sensor_range_m=50.0)
-    row = {"drive_id": "d", "check_id": "ego_chosen", "actor_id": "ego", "severity": "info", "message": "", "n": 1}
-    scene.trace.tables["quality"] = pa.Table.from_pylist([row], schema=scene.trace.tables["quality"].schema)
-    return {row["rule_id"] for row in judged([scene], rules=COMFORT) if row["verdict"] == "fail"}
-
-
-def test_whom_sensors_measured_gains_speed_as_engines_let_it() -> None:
-    assert "comfort.nuplan" in measured(straight(2 + 5.0 * T))
-    assert not measured(straight(2 + 7.0 * T))
-    assert "comfort.nuplan" in measured(straight(60 - 7.0 * T))
-
-
-@pytest.mark.parametrize(
-    ("aside_mps", "at_s", "expected"),
-    [(1.5, 3.4, set()), (0.7, 3.4, {"comfort.nuplan"}), (1.5, 0.6, {"comfort.nuplan"})],
-)
-@pytest.mark.parametrize("side", [1, -1])
-def test_whom_sensors_measured_sliding_sideways_is_not_believed(
-    aside_mps: float, at_s: float, expected: set[str], side: int
-) -> None:
-    """Braking of 7 m/s2 from 3 s on, and 0.6 s of moving sideways at an unchanged heading: by 3 to 8 degrees."""
-    speed = np.clip(16 - 7 * np.clip(T - 3, 0, None), 0, None)
-    along = straight(speed)
-    vy = np.where((at_s <= T) & (at_s + 0.6 >= T), side * aside_mps, 0.0)
-    y = np.concatenate([[0.0], np.cumsum((vy[1:] + vy[:-1]) / 2 * 0.1)])
-    ego = Actor("ego", T, along.x, y, STILL, speed, vy)
-    assert measured(ego) & {"comfort.nuplan"} == expected

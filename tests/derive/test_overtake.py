@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from shapely import affinity
 from shapely.geometry import box
 
 from drivelint.engine.batch import Drive
 from drivelint.reasons.reason_text import sentence
-from tests import scenes
-from tests.derive.overtake_scene import crash, scene
+from tests.derive.overtake_scene import scene
 from tests.scenes import LANE, Actor, Road, derived, drive, moving, road, rows, standing, swing, times
 
 MPH = 0.44704
@@ -95,239 +92,6 @@ def test_mirrored_scenes_give_mirrored_results() -> None:
                     assert value == pytest.approx(b[column], abs=1e-6), (table, column)
                 else:
                     assert value == b[column], (table, column)
-
-
-def test_an_aborted_overtake() -> None:
-    way, actors = scene(abort=True)
-    (found,) = one(actors, way, "overtake")
-    assert (found["status"], found["passed"], found["t1_ns"]) == ("aborted", False, None)
-    furthest = int(np.argmax(way.over * actors[0].y)) * 100_000_000
-    assert found["t0_ns"] < found["t2_ns"] < found["t3_ns"]
-    assert abs(found["t2_ns"] - furthest) <= 300_000_000
-    (observed,) = [row for row in one(actors, way, "overtake_sda") if row["profile"] == "observed"]
-    assert observed["sda_m"] is None
-    assert json.loads(observed["reason"])["code"] == "overtake_aborted"
-
-
-@pytest.mark.parametrize("end", [9.0, 10.0, 12.0, 19.5])
-def test_an_overtake_that_the_log_cuts_off(end: float) -> None:
-    way, actors = scene()
-    (whole,) = one(actors, way, "overtake")
-    assert whole["t0_ns"] < 9e9 < whole["t1_ns"] < 12e9 < whole["t2_ns"] < 19.5e9 + 1.1e9 < whole["t3_ns"] + 2e9
-    (found,) = one([a.keep(a.t_s < end + 0.01) for a in actors], way, "overtake")
-    assert (found["status"], found["t3_ns"], found["t_end_ns"]) == ("truncated", None, round(end * 1e9))
-    assert found["t2_ns"] is None  # whether it turned back for good is not known
-    assert found["t1_ns"] == (whole["t1_ns"] if whole["t1_ns"] <= end * 1e9 else None)
-    assert (found["t0_ns"], found["da_m"]) == (whole["t0_ns"], whole["da_m"])
-
-
-@pytest.mark.parametrize("start", [9.0, 12.0])
-def test_an_overtake_that_begins_before_the_log(start: float) -> None:
-    way, actors = scene()
-    late = [a.keep(a.t_s > start - 0.01) for a in actors]
-    found = one(late, way, "overtake")
-    assert not [row for row in found if row["begin_seen"]]
-    if start == 9.0:  # its centre is still in its lane then
-        assert [(row["status"], row["t0_ns"]) for row in found] == [("completed", 9_000_000_000)]
-        assert {row["da_m"] for row in one(late, way, "overtake_sda")} == {None}
-
-
-@pytest.mark.ci
-@pytest.mark.parametrize(("hand", "lost_s", "n"), [("rht", 0.4, 1), ("lht", 0.4, 1), ("rht", 0.7, 2), ("lht", 0.7, 2)])
-def test_a_short_hole_over_the_line_does_not_part_an_overtake(hand: str, lost_s: float, n: int) -> None:
-    way, actors = scene(hand)
-    (whole,) = one(actors, way, "overtake")
-    middle = (whole["t0_ns"] + whole["t3_ns"]) / 2e9
-    lost = [a.lost((a.t_s > middle) & (a.t_s < middle + lost_s - 0.05)) if a.actor_id == "ego" else a for a in actors]
-    found = one(lost, way, "excursion")
-    assert len(found) == n
-    if n == 1:
-        (held,) = one(lost, way, "overtake")
-        assert {key: held[key] for key in ("t0_ns", "t3_ns", "passed", "da_m")} == {
-            key: whole[key] for key in ("t0_ns", "t3_ns", "passed", "da_m")
-        }
-
-
-@pytest.mark.ci
-def test_a_hole_before_t0_hides_where_it_began() -> None:
-    way, actors = scene()
-    (whole,) = one(actors, way, "overtake")
-    t0 = whole["t0_ns"] / 1e9
-    holed = [a.keep((a.t_s < t0 - 0.5) | (a.t_s > t0 + 0.15)) for a in actors]
-    (found,) = one(holed, way, "overtake")
-    assert found["begin_seen"] is False
-    assert found["t0_ns"] > whole["t0_ns"]
-    reasons = {sentence(row["reason"]) for row in one(holed, way, "overtake_sda")}
-    assert reasons == {"the log does not show the beginning of the overtake: record the ego from before it"}
-
-
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_beside_a_parked_car_that_leaves_room_in_the_lane_the_ego_is_over_the_line_for_another_reason(
-    hand: str,
-) -> None:
-    """The ego, 1.8 m wide, is 0.5 m over the line beside a car that leaves it 2.9 m of its lane, or 2.5 m."""
-    way, (ego, _, ov) = scene(hand)
-    astride = moving("ego", way, ego.t_s, ego.x, swing(way, ego.x, 170, 230, share=0.386))
-    for reaches_in, passed in ((0.6, []), (1.0, ["parked"])):
-        parked = standing("parked", way, ego.t_s, 200, np.sign(way.own) * (LANE + 0.9 - reaches_in))
-        assert [row["vbp_id"] for row in one([astride, parked, ov], way, "overtake")] == passed
-
-
-def test_the_one_parked_the_wrong_way_round_is_no_oncoming_vehicle() -> None:
-    way, (ego, _, _) = scene()
-    parked = standing("parked", way, ego.t_s, 200, way.own, turned=math.pi)
-    assert {row["object_id"] for row in one([ego, parked], way, "oncoming")} == {None}
-
-
-def test_a_change_of_lane_in_the_same_direction_is_not_opposing() -> None:
-    way = road(lanes=(1, 2))
-    t = times(25.0)
-    s = 50 + 12 * t
-    d = -1.5 * LANE + LANE * np.clip((s - 150) / 40, 0, 1)
-    vbp = moving("vbp", way, t, 140 + 4 * t, -1.5 * LANE)
-    con = derived(drive([moving("ego", way, t, s, d), vbp], way.environment), tables=["overtake", "lane_departure"])
-    (found,) = rows(con, "FROM overtake")
-    assert (found["opposing"], found["status"], found["passed"]) == (False, "lane_change", True)
-    departures = rows(con, "FROM lane_departure ORDER BY t_ns")
-    assert [(row["side"], row["back"]) for row in departures] == [("left", False)]
-
-
-def test_nobody_ahead_is_no_overtake_but_a_departure() -> None:
-    way, (ego, _, ov) = scene()
-    con = derived(drive([ego, ov], way.environment), tables=["overtake", "lane_departure"])
-    assert not rows(con, "FROM overtake")
-    departures = rows(con, "FROM lane_departure ORDER BY t_ns")
-    assert [(row["side"], row["back"], row["begin_seen"]) for row in departures] == [
-        ("left", False, True),
-        ("right", True, True),
-    ]
-
-
-@pytest.mark.ci
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_a_look_past_the_vehicle_ahead_is_no_overtake_if_all_of_it_was_seen(hand: str) -> None:
-    """Its corner is 0.7 m over the line for seven seconds, its centre never; nobody is passed."""
-    way = road(hand=hand)
-    t = times(14.0)
-    vbp = moving("vbp", way, t, 130 + 8 * t, way.own)
-    ego = moving("ego", way, t, 60 + 8 * t, swing(way, 60 + 8 * t, 76, 130, share=0.45))
-    (out,) = one([ego, vbp], way, "excursion")
-    assert 0.6 < out["max_out_m"] < 0.9
-    assert not one([ego, vbp], way, "overtake")
-    # what was not seen may have been one
-    for actors in ([ego, vbp.lost((t > 4) & (t < 5))], [ego, vbp.keep(t < 5)]):
-        assert [row["status"] for row in one(actors, way, "overtake")] == ["aborted"]
-    early, late = [ego.keep(t >= 4), vbp.keep(t >= 4)], [ego.keep(t <= 7), vbp.keep(t <= 7)]
-    assert [(row["status"], row["begin_seen"]) for row in one(early, way, "overtake")] == [("aborted", False)]
-    assert [row["status"] for row in one(late, way, "overtake")] == ["truncated"]
-
-
-@pytest.mark.parametrize("reach", [0.3, 0.7])
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_an_ego_that_stays_at_the_line_overtakes_when_it_pulls_out(hand: str, reach: float) -> None:
-    """From 60 to 300 m it is `reach` over the line behind the car ahead; the car that comes is near when it pulls out."""
-    way = road(((1200.0, 0.0),), hand)
-    t = times(40.0)
-    s = 50 + 10 * t
-    share = (LANE / 2 - 0.9 + reach) / LANE
-    far, near = swing(way, s, 300, 400), swing(way, s, 60, 400, share=share)
-    ego = moving("ego", way, t, s, way.own + (near - way.own) + (far - way.own) * (1 - share))
-    vbp = moving("vbp", way, t, np.where(t < 24, 100 + 10 * t, 340 + 2 * (t - 24)), way.own)
-    ov = moving("ov", way, t, 850 - 8 * t, way.other)
-    (found,) = one([ego, vbp, ov], way, "overtake")
-    # at 25 s it begins to move over; a tenth of a metre in a second is soon reached
-    assert found["t0_ns"] / 1e9 == pytest.approx(25.2, abs=0.2)
-    assert found["da_m"] == pytest.approx(800 - 18 * found["t0_ns"] / 1e9 - 4.8, abs=0.5)
-    (nominal,) = [row for row in one([ego, vbp, ov], way, "overtake_sda") if row["profile"] == "nominal"]
-    assert nominal["da_m"] is not None
-    assert nominal["sda_m"] is not None
-
-
-@pytest.mark.ci
-@pytest.mark.parametrize("lacks", ["yaw", "length", "width"])
-def test_who_lacks_heading_or_size_ahead_may_be_the_one(lacks: str) -> None:
-    """Nearer than another who is placed: the overtake is not that one's alone."""
-    way, (ego, vbp, ov) = scene()
-
-    def without(actor: Actor) -> Actor:
-        lost: dict[str, Any] = {lacks: actor.yaw * np.nan if lacks == "yaw" else None}
-        return replace(actor, **lost)
-
-    unknown = without(vbp)
-    far = moving("far", way, ego.t_s, 260 + 4 * ego.t_s, way.own)
-    for actors in ([ego, unknown, ov], [ego, unknown, ov, far]):
-        (found,) = one(actors, way, "overtake")
-        assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
-    distant = moving("vbp", way, ego.t_s, 260 + 0.1 * ego.t_s, way.own)  # 105 m ahead at t0, and passed
-    unknown = without(distant)
-    assert [row["vbp_placed"] for row in one([ego, unknown, ov], way, "overtake")] == [False]
-    beside = moving("vbp", way, ego.t_s, 140 + 4 * ego.t_s, way.own - 8 * way.over)
-    unknown = without(beside)
-    assert not one([ego, unknown, ov], way, "overtake")
-
-
-@pytest.mark.ci
-def test_who_comes_into_the_log_later_and_is_passed_was_there() -> None:
-    way, (ego, vbp, ov) = scene()
-    (whole,) = one([ego, vbp, ov], way, "overtake")
-    late = vbp.keep(vbp.t_s * 1e9 > whole["t0_ns"] + 3e8)
-    far = moving("vbp", way, ego.t_s, 230 + 1 * ego.t_s, way.own)
-    for actor in (late, far.keep(far.t_s * 1e9 > whole["t0_ns"] + 3e8)):
-        (found,) = one([ego, actor, ov], way, "overtake")
-        assert (found["vbp_id"], found["vbp_placed"], found["vbp_gap_m"]) == ("vbp", False, None)
-        assert (found["t0_ns"], found["passed"]) == (whole["t0_ns"], True)
-
-
-@pytest.mark.parametrize("stops", [False, True])
-def test_who_comes_into_the_log_later_towards_the_ego_is_not_overtaken(stops: bool) -> None:
-    """The vehicle ahead is 105 m away and is passed; the oncoming one appears over the end of the map after t0, and may stop later."""
-    way, (ego, _, _) = scene()
-    t = ego.t_s
-    far = moving("vbp", way, t, 260 + 0.1 * t, way.own)
-    way_s = 590 - 9 * (np.minimum(t, 20) if stops else t)
-    late = moving("ov", way, t, way_s, way.other).keep(t > 9.0)
-    con = derived(drive([ego, far, late], way.environment), tables=["overtake", "unplaced"])
-    found = rows(con, "FROM overtake")
-    assert found[0]["t0_ns"] < 9e9
-    assert rows(con, f"FROM unplaced WHERE object_id = 'ov' AND t_ns = {found[0]['t0_ns']}")
-    assert [(row["vbp_id"], row["vbp_placed"]) for row in found] == [("vbp", True)]
-
-
-@pytest.mark.ci
-def test_what_may_be_an_overtake_is_not_surely_one() -> None:
-    """The ego passes somebody, turns back behind it, or sways over the line for an oncoming car while one ahead is lost."""
-    way, (ego, vbp, ov) = scene()
-    (whole,) = one([ego, vbp, ov], way, "overtake")
-    assert whole["sure"]
-    _, aborted = scene(abort=True)
-    assert [(row["sure"], row["status"]) for row in one(aborted, way, "overtake")] == [(True, "aborted")]
-    late = vbp.keep(vbp.t_s * 1e9 > whole["t0_ns"] + 3e8)
-    assert [(row["sure"], row["vbp_placed"]) for row in one([ego, late, ov], way, "overtake")] == [(True, False)]
-    s = 50 + 12 * ego.t_s
-    sways = moving("ego", way, ego.t_s, s, swing(way, s, 150, 190, share=0.4))
-    lost = moving("vbp", way, ego.t_s, 80 + 12 * ego.t_s, way.own).keep(ego.t_s < 8.0)
-    con = derived(drive([sways, lost, ov], way.environment), tables=["overtake_step"])
-    assert {(row["vbp_id"], row["sure"]) for row in rows(con, "FROM overtake_step")} == {("vbp", False)}
-    # one that stays astride for 3 s has pulled out, whoever is placed only later
-    astride = moving("ego", way, ego.t_s, s, swing(way, s, 150, 240, share=0.4)).keep(ego.t_s >= 9.9)
-    con = derived(drive([astride, vbp, ov], way.environment), tables=["overtake"])
-    assert [(row["begin_seen"], row["sure"]) for row in rows(con, "FROM overtake")] == [(False, True)]
-    found = scenes.judged([drive([sways, lost, ov], way.environment)], rules=["ukhc.r126.ds*"])
-    assert not [row["reason"] for row in found if row["verdict"] == "fail"]
-
-
-def test_a_wobble_over_the_line_is_an_excursion_and_nothing_else() -> None:
-    way, (ego, vbp, ov) = scene()
-    d = swing(way, ego.x, 70, 100, share=0.28)  # 0.1 m over
-    con = derived(
-        drive([moving("ego", way, ego.t_s, ego.x, d), vbp, ov], way.environment),
-        tables=["overtake", "lane_departure", "excursion"],
-    )
-    (found,) = rows(con, "FROM excursion")
-    assert 0.05 < found["max_out_m"] < 0.3
-    assert found["centre_over"] is False
-    assert not rows(con, "FROM overtake")
-    assert not rows(con, "FROM lane_departure")
 
 
 def safe_distance(  # noqa: PLR0917 - the formula's own symbols
@@ -416,25 +180,6 @@ def test_the_observed_profile_takes_what_this_overtake_had() -> None:
     assert sum_of_parts(row) == pytest.approx(row["sda_m"], rel=1e-9)
 
 
-@pytest.mark.parametrize(("far", "verdict"), [(700.0, ("unknown", "pass")), (200.0, ("fail", "fail"))])
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_an_ego_that_speeds_up_to_overtake_is_not_held_to_its_speed_at_the_start(
-    hand: str, far: float, verdict: tuple[str, str]
-) -> None:
-    """It pulls out at 9.5 m/s behind a tractor at 9 m/s, and is past it in some ten seconds: at 9.5 m/s it would take a minute."""
-    found = _judged_speeding_up(hand, far, until_s=40.0)
-    assert (found["nominal"]["verdict"], found["observed"]["verdict"]) == verdict
-    assert ("its mean speed" in found["nominal"]["reason"]) == (verdict[0] == "unknown")
-
-
-@pytest.mark.parametrize("until_s", [20.0, 13.0], ids=["it has sped up", "it has not yet sped up"])
-@pytest.mark.parametrize(("far", "verdict"), [(700.0, "unknown"), (120.0, "fail")])
-def test_nor_is_one_that_is_still_out_when_the_log_ends(far: float, verdict: str, until_s: float) -> None:
-    found = _judged_speeding_up("lht", far, until_s)
-    assert found["nominal"]["verdict"] == verdict
-    assert ("until it was back" in found["nominal"]["reason"]) == (verdict == "unknown")
-
-
 @pytest.mark.parametrize("until_s", [12.0, 14.0, 17.0])
 def test_how_fast_it_could_still_have_been_is_that_of_full_acceleration_up_to_the_limit(until_s: float) -> None:
     """Held against an ego that speeds up step by step, for every mean speed in steps of 0.01 m/s."""
@@ -461,10 +206,6 @@ def test_how_fast_it_could_still_have_been_is_that_of_full_acceleration_up_to_th
     assert most - (60 * MPH - o["v_av_mps"]) / 64 - 0.02 <= told["v_later_mps"] <= most + 0.02
     expected = safe_distance(LANE, *angles, k, told["v_later_mps"], o["v_vbp_mps"], o["v_ov_mps"])
     assert told["later_sda_m"] == pytest.approx(expected, rel=1e-6)
-
-
-def _judged_speeding_up(hand: str, far: float, until_s: float) -> dict[str, Row]:
-    return {row["profile"]: row for row in scenes.judged([_speeding_up(hand, far, until_s)], rules=[SDA])}
 
 
 def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
@@ -509,28 +250,6 @@ def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
         for *alone, together in zip(*steps, strict=True):
             seen = [row[column] for row in alone if row["ov_id"] is not None]
             assert together[column] == (pytest.approx(max(seen)) if seen else None)
-
-
-def test_without_anybody_the_distance_is_a_bound_and_the_limit_is_assumed() -> None:
-    """The road ends at 600 m; SDA is worked out for an oncoming vehicle at 60 mph."""
-    way, (ego, vbp, _) = scene()
-    con = derived(drive([ego, vbp], way.environment), tables=["overtake_sda"])
-    (o,) = rows(con, "FROM overtake")
-    assert (o["ov_id"], o["free_reason"]) == (None, "map_end")
-    assert o["v_ov_mps"] == pytest.approx(60 * MPH)
-    front = 50 + 12 * o["t0_ns"] / 1e9 + 2.4
-    assert o["da_m"] == pytest.approx(600 - front, abs=0.2)
-    for row in rows(con, "FROM overtake_sda"):
-        assert row["at_least"]
-        assert row["nobody"]
-
-
-def test_an_unlimited_road_gives_no_speed_to_assume() -> None:
-    way = road(limit_mph=None)
-    _, (ego, vbp, _) = scene()
-    found = one([ego, vbp], way, "overtake_sda")
-    assert {row["sda_m"] for row in found} == {None}
-    assert "no speed limit" in " ".join(sentence(row["reason"]) for row in found)
 
 
 def spaces(a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
@@ -590,94 +309,3 @@ def test_danger_spaces_on_a_straight_road_are_rectangles() -> None:
             if depth > 0:
                 seen.add(column)
     assert seen == {"vbp_in_ds_av_m", "ov_in_ds_av_m", "av_in_ds_ov_m", "ds_overlap_m"}
-
-
-def held_up(way: Road, t: NDArray[np.float64], speed: float = 10.0) -> list[Actor]:
-    return [moving("ego", way, t, 50 + speed * t, way.own), moving("slow", way, t, 80 + speed * t, way.own)]
-
-
-def test_an_opportunity_that_is_not_taken() -> None:
-    """Held up for 20 s at 10 m/s under 60 mph, an empty road ahead; on a road of one way there is none."""
-    way = road(((2000.0, 0.0),))
-    t = times(20.0)
-    found = one(held_up(way, t), way, "opportunity")
-    assert {row["profile"] for row in found} == {"relaxed", "nominal", "aggressive"}
-    for row in found:
-        assert (row["object_id"], row["occurrence"], row["taken"]) == ("slow", 0, False)
-        assert (row["t_start_ns"], row["t_end_ns"]) == (0, 20_000_000_000)
-        assert row["zone"] == "D"
-        assert row["t_best_ns"] is not None
-    one_way = road(((2000.0, 0.0),), lanes=(0, 2))
-    assert not one(held_up(one_way, t), one_way, "opportunity")
-
-
-@pytest.mark.parametrize("rules", [("ukhc.r162.safe-distance-ahead", "ukhc.r126.ds-*")])
-def test_the_rules_agree_with_the_tables(rules: tuple[str, ...]) -> None:
-    way, actors = scene()
-    verdicts = scenes.judged([drive(actors, way.environment)], rules=rules, profiles=["nominal"])
-    assert {row["verdict"] for row in verdicts if "r162" in row["rule_id"]} == {"pass"}
-    assert "error" not in {row["verdict"] for row in verdicts}
-
-
-SDA = "ukhc.r162.safe-distance-ahead"
-
-
-@pytest.mark.parametrize("then", ["end", "stand", "back"])
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_an_overtake_that_ends_in_a_head_on_crash_fails_by_default(hand: str, then: str) -> None:
-    """The nominal plan is over in half of the time and has road enough; what was driven had not."""
-    way = road(((2000.0, 0.0),), hand)
-    found = {row["profile"]: row for row in scenes.judged([drive(crash(way, then), way.environment)], rules=[SDA])}
-    assert {profile: row["verdict"] for profile, row in found.items()} == {"nominal": "pass", "observed": "fail"}
-    assert found["nominal"]["margin"] > 100
-    assert found["observed"]["observed"] == found["nominal"]["observed"]
-    assert found["observed"]["margin"] < 0
-
-
-@pytest.mark.parametrize("hand", ["rht", "lht"])
-def test_what_was_driven_of_a_broken_off_overtake_is_the_least_that_it_needed(hand: str) -> None:
-    way = road(((2000.0, 0.0),), hand)
-    actors = crash(way, "end")
-    con = derived(drive(actors, way.environment), tables=["overtake_sda"])
-    (o,) = rows(con, "FROM overtake")
-    (row,) = rows(con, "FROM overtake_sda WHERE profile = 'observed'")
-    seconds = (o["t_end_ns"] - o["t0_ns"]) / 1e9
-    front = {k: max(actors[0].x[k] + 2.4 * math.cos(actors[0].yaw[k]) + b * 0.9 * math.sin(actors[0].yaw[k]) for b in (1, -1))
-             for k in (round(o["t0_ns"] / 1e8), round(o["t_end_ns"] / 1e8))}  # fmt: skip
-    way_m = max(front.values()) - min(front.values())
-    assert o["status"] == "truncated"
-    assert row["sda_m"] == pytest.approx(way_m + 25 * seconds + stopping(25.0), abs=1e-6)
-    assert row["zone"] == "A"
-    assert "out of its lane" in sentence(row["reason"])
-
-
-@pytest.mark.parametrize("end", [13.0, 15.0, 16.5])
-def test_as_long_as_the_road_would_do_a_broken_off_overtake_is_unknown(end: float) -> None:
-    way = road(((2000.0, 0.0),))
-    actors = [a.keep(a.t_s < end + 0.05) for a in crash(way, "end")]
-    found = {row["profile"]: row for row in scenes.judged([drive(actors, way.environment)], rules=[SDA])}
-    assert {profile: row["verdict"] for profile, row in found.items()} == {"nominal": "pass", "observed": "unknown"}
-    assert "the log ends before the overtake is complete" in found["observed"]["reason"]
-
-
-def test_an_oncoming_vehicle_that_speeds_up_counts_with_the_way_that_it_made() -> None:
-    """It comes at 5 m/s when the ego goes out, and at 35 m/s when they meet."""
-    way = road(((2000.0, 0.0),))
-    ego, vbp, _ = crash(way, "end")
-    t = ego.t_s
-    v = np.clip(5 + 12 * (t - 11), 5, 35)
-    made = np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
-    ov = moving("ov", way, t, ego.x[-1] + 3 + made[-1] - made, way.other)
-    (row,) = (r for r in one([ego, vbp, ov], way, "overtake_sda") if r["profile"] == "observed")
-    assert row["da_m"] <= row["sda_m"]
-    calm = moving("ov", way, t, ego.x[-1] + 3 + made[-1] - 5 * t, way.other)
-    (row,) = (r for r in one([ego, vbp, calm], way, "overtake_sda") if r["profile"] == "observed")
-    assert row["sda_m"] is None
-
-
-@pytest.mark.ci
-def test_a_profile_that_is_named_is_the_only_one() -> None:
-    way, actors = scene()
-    for asked in ([], ["relaxed"], ["nominal"], ["aggressive", "relaxed"]):
-        found = scenes.judged([drive(actors, way.environment)], rules=[SDA], profiles=asked)
-        assert {row["profile"] for row in found} == set(asked or ["nominal", "observed"])

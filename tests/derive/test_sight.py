@@ -76,23 +76,6 @@ def test_a_lane_in_plain_view_is_judged(rule: str) -> None:
     assert None in {r["object_id"] for r in found}
 
 
-@pytest.mark.parametrize("rule", AHEAD)
-def test_one_lost_before_its_eyes_is_not_nobody(rule: str) -> None:
-    """8 m ahead and lost: for 2.5 s it may well be there. Without the assumption for longer."""
-    found = judged([follows_nobody(in_sight=True, gap=8.0)], rules=[rule])
-    unknown = [r for r in found if r["verdict"] == "unknown"]
-    assert unknown
-    assert {r["assumes"] for r in unknown} == {None}
-    # the reason says who it is
-    assert any(
-        "; the position of object x at that time is not known: its track ends at " in r["reason"] for r in unknown
-    )
-    con = derived(follows_nobody(in_sight=True, gap=8.0), tables=["vehicle_ahead"])
-    ahead = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM vehicle_ahead ORDER BY t_ns")}
-    assert all(k not in ahead or (not ahead[k]["known"] and ahead[k]["free_m"] < 15) for k in range(31, 56))
-    assert ahead[57]["free_m"] > 70
-
-
 def test_the_reason_is_the_objects_own_track() -> None:
     """Two beside the ego are lost, the nearer one later: each verdict speaks of its own object."""
     t = times(12.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +9,8 @@ import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross, crosswalk
-from tests.derive.marked import marked
 from tests.derive.trailer_scene import drawn
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, saying, standing, times
+from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
 
 if TYPE_CHECKING:
     import duckdb
@@ -80,32 +78,6 @@ def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
     assert found["behind"] == "unknown"
 
 
-@pytest.mark.parametrize(
-    ("kind", "expected"),
-    [("car", "car_towing"), ("bus", None), ("motorcycle", None), ("van", None), ("truck", None), (None, None)],
-)
-@HANDS
-def test_a_car_that_draws_a_trailer_is_one_that_tows(hand: str, kind: str | None, expected: str | None) -> None:
-    way = road(((600.0, 0.0),), hand)
-    t = times(10.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own, kind=kind)
-    con = derived(drive([ego, drawn("t", ego, kind="trailer")], way.environment), tables=["ego_condition"])
-    assert {row["vehicle_class"] for row in rows(con, "FROM ego_condition")} == {expected}
-
-
-@pytest.mark.parametrize(("mph", "expected"), [(49, "pass"), (58, "fail")])
-@HANDS
-def test_a_car_with_a_trailer_keeps_to_its_own_limit(hand: str, mph: float, expected: str) -> None:
-    """R124: 50 mph on a single carriageway, though its sign says 60, which holds for the same car without."""
-    way = road(((600.0, 0.0),), hand)
-    t = times(10.0)
-    ego = moving("ego", way, t, 100 + mph * 0.44704 * t, way.own)
-    alone, towing = drive([ego], way.environment), drive([ego, drawn("t", ego, kind="trailer")], way.environment)
-    limit = ["ukhc.r124.speed-limit"]
-    assert {row["verdict"] for row in judged([saying(alone, nation="gb")], rules=limit)} == {"pass"}
-    assert {row["verdict"] for row in judged([saying(towing, nation="gb")], rules=limit)} == {expected}
-
-
 @pytest.mark.parametrize("unseen", [False, True])
 @HANDS
 def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) -> None:
@@ -124,80 +96,6 @@ def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) 
         assert over["t_out_ns"] / 1e9 == pytest.approx((103 + reach - 60) / 8, abs=0.11)
         assert through["t_in_ns"] / 1e9 == pytest.approx((185 - 2.4 - 60) / 8, abs=0.11)
         assert through["t_out_ns"] / 1e9 == pytest.approx((215 + reach - 60) / 8, abs=0.11)
-
-
-@pytest.mark.parametrize(("trailer", "left_s"), [(False, 5 + 3.3 / 10), (True, 5 + (9.4 + 0.9) / 10)])
-def test_common_ground_is_left_when_the_trailer_leaves_it(trailer: bool, left_s: float) -> None:
-    """The other goes north at 5 m/s and is at the ego's lane at 8 s: until its front touches the side of the wider of the two boxes."""
-    t = times(12.0)
-    east, north = Road(None, ((1000.0, 0.0),), (0.0, 0.0, 0.0)), Road(None, ((1000.0, 0.0),), (0.0, 0.0, math.pi / 2))  # type: ignore[arg-type]
-    ego, other = moving("ego", east, t, -50 + 10 * t, 0.0), moving("other", north, t, -40 + 5 * t, 0.0)
-    scene = [ego, other, drawn("t", ego, kind="trailer")] if trailer else [ego, other]
-    (row,) = rows(derived(drive(scene, None), tables=["conflict"]), "FROM conflict")
-    assert (row["object_id"], row["ego_first"]) == ("other", True)
-    half_m = 1.1 if trailer else 0.9
-    assert row["pet_s"] == pytest.approx(8 - (2.4 + half_m) / 5 - left_s, abs=1e-6)
-
-
-@HANDS
-def test_the_trailer_is_not_somebody_else_to_brake_for(hand: str) -> None:
-    """The ego is across in time, its trailer is not, and the oncoming car brakes for that."""
-    ways = cross(hand)
-    t = times(30.0)
-    way = ways["wn".translate(str.maketrans("ns", "sn")) if hand == "lht" else "wn"]
-    ego = moving("ego", way, t, 120 + 8 * t, way.own)
-    speed = np.clip(14.0 - 6.0 * np.clip(t - 8.0, 0, None), 0, 14.0)
-    came = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(t))])
-    other = moving("o", ways["ew"], t, 56 + came, ways["we"].own)
-    trailer = drawn("t", ego, length=8.0, kind="trailer")
-    for actors, pet_s in (([ego, other], 0.51), ([ego, trailer, other], -0.59)):
-        con = derived(drive(actors, ways["we"].environment), tables=["forced_braking"])
-        (row,) = rows(con, "FROM forced_braking")
-        assert (row["object_id"], row["other_cause"]) == ("o", None)
-        assert row["pet_s"] == pytest.approx(pet_s, abs=0.11)
-
-
-TAILGATERS = [
-    ("a car at half a metre", 0.5, "car", "ego"),
-    ("a vehicle at half a metre", 0.5, "vehicle", "ego"),
-    ("a truck at a decimetre and a half, which brakes away", 0.15, "truck", "brakes"),
-    ("a trailer that stays behind", 0.5, "trailer", "brakes"),
-    ("a trailer of another lane", 0.5, "trailer", "beside"),
-]
-
-
-@pytest.mark.parametrize(("what", "gap", "kind", "how"), TAILGATERS)
-@HANDS
-def test_who_is_no_trailer(hand: str, what: str, gap: float, kind: str, how: str) -> None:
-    way = road(((600.0, 0.0),), hand)
-    t = times(15.0)
-    ego = moving("ego", way, t, 60 + 15 * t, way.own)
-    s = 60 + 15 * t - 4.8 - gap - (np.maximum(t - 10, 0) ** 2 if how == "brakes" else 0)
-    other = moving("x", way, t, s, way.other if how == "beside" else way.own, kind=kind)
-    scene = drive([ego, other], way.environment)
-    assert parts(scene) == {}
-    assert there(derived(scene, tables=["pair"])) == {"x"}
-
-
-@pytest.mark.ci
-@HANDS
-def test_a_tailgater_round_a_bend_is_none_either(hand: str) -> None:
-    """Its box follows the lane, not the ego's hitch, and does not touch."""
-    way = road(BEND, hand)
-    t = times(20.0)
-    ego = moving("ego", way, t, 40 + 10 * t, way.own)
-    for kind in ("car", "vehicle", None):
-        assert parts(drive([ego, moving("x", way, t, 40 + 10 * t - 5.1, way.own, kind=kind)], way.environment)) == {}
-
-
-def test_who_is_struck_and_pushed_is_no_trailer() -> None:
-    """It stood there, was struck from behind and shoved on; seen from it, the ego came from behind and touched it from then on."""
-    way = road(((600.0, 0.0),))
-    t = times(12.0)
-    pusher = np.where(t < 4, 15 * t, 60 + 8 * (t - 4))
-    struck = moving("ego", way, t, 164.8 + np.where(t < 4, 0, 8 * (t - 4)), way.own)
-    scene = drive([struck, moving("x", way, t, 100 + pusher, way.own, kind="vehicle")], way.environment)
-    assert parts(scene) == {}
 
 
 # ---- ids
@@ -228,52 +126,3 @@ def test_the_ego_under_another_id_is_no_collision(hand: str, ego: str, overlap: 
     assert not rows(con, "FROM conflict")
     assert {row["object_id"] for row in judged([scene], rules=[CRASH])} <= {"other"}
     assert "fail" not in {row["verdict"] for row in judged([scene], rules=[CRASH])}
-
-
-OTHERS = [
-    ("beside", {"shift": (0.0, 3.5)}),
-    ("a length ahead", {"shift": (5.0, 0.0)}),
-    ("into the ego, half over it", {"shift": (2.5, 0.3)}),
-    ("a truck", {"length": 9.0}),
-    ("a walker", {"kind": "pedestrian", "length": 0.5, "width": 0.5}),
-]
-
-
-@pytest.mark.parametrize(("what", "change"), OTHERS)
-@HANDS
-def test_who_appears_where_the_ego_ends_is_somebody(hand: str, what: str, change: dict[str, Any]) -> None:
-    way = road(((600.0, 0.0),), hand)
-    t = times(12.0)
-    k = np.arange(len(t))
-    more = dict(change)
-    dx, dy = more.pop("shift", (0.0, 0.0))
-    first, then = renamed(way, t, k < 60, k >= 59, **more)
-    scene = drive([first, replace(then, x=then.x + dx, y=then.y + dy)], way.environment)
-    assert parts(scene) == {}
-    if what.startswith("into"):
-        assert {row["verdict"] for row in judged([scene], rules=[CRASH])} == {"fail"}
-
-
-def test_who_was_there_before_is_no_successor() -> None:
-    """A real collision: its track begins long before the ego's ends."""
-    way = road(((600.0, 0.0),))
-    t = times(12.0)
-    ego = moving("ego", way, t, 50 + 10 * t, way.own).keep(t < 6)
-    other = moving("next", way, t, 50 + 10 * t, way.own).keep(t > 4)
-    assert parts(drive([ego, other], way.environment)) == {}
-    assert "fail" in {r["verdict"] for r in judged([drive([ego, other], way.environment)], rules=[CRASH])}
-
-
-@HANDS
-@pytest.mark.parametrize(("kind", "turned"), [("trailer", 0.0), ("trailer", 0.25), ("car", 0.25)])
-def test_a_trailer_that_swings_over_the_footway_is_the_ego_there(hand: str, kind: str, turned: float) -> None:
-    """Its tail 0.4 m further out than the road is wide; a car behind on the same way is not the ego."""
-    way = marked(hand, beyond="sidewalk")
-    t = times(12.0)
-    ego = moving("ego", way, t, 60 + 8 * t, way.own, length=6.0, width=2.0)
-    out = np.sign(way.own)
-    far = 3.0 + (0.5 if kind == "trailer" else 12.0)
-    behind = moving("t", way, t, 60 + 8 * t - far - 3.0, way.own, length=6.0, width=2.2, kind=kind)
-    swung = replace(behind, yaw=behind.yaw - out * turned, y=behind.y + out * 3.0 * math.sin(turned))
-    found = rows(derived(drive([ego, swung], way.environment), tables=["ego_footway"]), "FROM ego_footway")
-    assert {row["depth_m"] > 0 for row in found} == {kind == "trailer" and turned > 0}

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pyarrow as pa
 import pytest
 
 from drivelint.engine.batch import Drive
-from tests.scenes import derived, drive, judged, moving, road, rows, times
+from tests.scenes import drive, judged, moving, road, times
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -33,30 +32,6 @@ def queue(hand: str = "rht", gap: float = 12.0, *, jolt: float = 0.5, speed: flo
     lead = moving("x", way, T, 104.8 + gap + speed * T, way.own)
     lead.vx[20] *= jolt
     return drive([moving("ego", way, T, 100 + 5 * T, way.own), lead], way.environment)
-
-
-@pytest.mark.parametrize(
-    ("code", "span"), [("velocity_bias", (1.45, 2.55)), ("common_jolt", (2.95, 4.0)), ("common_jolt", (0, 1.05))]
-)
-def test_what_is_no_jolt_or_has_no_end_in_the_log_has_no_bounds(code: str, span: tuple[float, float]) -> None:
-    con = derived(doubted(queue(), "x", code, span), tables=["velocity_bound", "vehicle_ahead"])
-    assert {(row["least_mps"], row["most_mps"]) for row in rows(con, "FROM velocity_bound")} == {(None, None)}
-    ahead = rows(con, "FROM vehicle_ahead WHERE closing_more_mps + closing_less_mps > 0")
-    assert {(row["closing_more_mps"], row["closing_less_mps"]) for row in ahead} == {(np.inf, np.inf)}
-
-
-@pytest.mark.parametrize("toward", [False, True])
-def test_closing_in_has_the_bounds_of_both(toward: bool) -> None:
-    way = road()
-    other = moving("x", way, T, 300 - 5 * T if toward else 120 + 5 * T, way.own)
-    told = drive([moving("ego", way, T, 100 + 5 * T, way.own), other], way.environment)
-    con = derived(doubted(doubted(told, "x"), "ego", span=(1.45, 2.05)), tables=["vehicle_ahead"])
-    found = {row["t_ns"]: row for row in rows(con, "FROM vehicle_ahead WHERE nearest")}
-    at = {k: (found[k * 10**8]["closing_more_mps"], found[k * 10**8]["closing_less_mps"]) for k in (10, 16, 24)}
-    # at 1.6 s x has 2.4 m/s of room, and so has the ego; at 2.4 s x alone
-    assert at[10] == (0, 0)
-    assert at[16] == pytest.approx((4.8, 4.8))
-    assert at[24] == pytest.approx((2.4, 2.4))
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
