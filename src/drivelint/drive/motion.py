@@ -170,13 +170,13 @@ def _actors_with_biased_speed(states: States, step: Steps, most_replaced_share: 
     return biased
 
 
-def _frozen_steps(states: States, step: Steps, known: Mask) -> Mask:
+def _frozen_steps(states: States, step: Steps, known_steps: Mask) -> Mask:
     """Return the mask of the steps (n - 1) within a second in which the positions are frozen."""
     n = len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k:
         return np.zeros(n - 1, np.bool_)
-    went, led, whole, _ = motion_over_steps(states, step, known, k)
+    went, led, whole, _ = motion_over_steps(states, step, known_steps, k)
     first = np.flatnonzero(whole & (np.hypot(*went) < FROZEN_SHARE * np.hypot(*led)))
     edges = np.zeros(n, np.int64)
     np.add.at(edges, first, 1)
@@ -185,11 +185,11 @@ def _frozen_steps(states: States, step: Steps, known: Mask) -> Mask:
     return frozen
 
 
-def _actors_with_factor(states: States, step: Steps, known: Mask, most_replaced_share: float) -> Mask:
+def _actors_with_factor(states: States, step: Steps, known_steps: Mask, most_replaced_share: float) -> Mask:
     biased = np.zeros(len(states.ids), np.bool_)
     v = (states.velocity[:, 1:] + states.velocity[:, :-1]) / 2.0
     speed = np.hypot(*v)
-    moving = known & (speed > BIAS_LEAST_MPS)
+    moving = known_steps & (speed > BIAS_LEAST_MPS)
     led = np.where(moving, speed * step.dt_s, 0.0)
     # projected on the velocity, so that lateral noise and noise at a standstill add nothing
     went = np.where(moving, np.sum(np.diff(states.place) * v, axis=0) / np.where(moving, speed, 1.0), 0.0)
