@@ -33,9 +33,10 @@ CREATE OR REPLACE MACRO jerk_half_ns() AS 700_000_000;
 -- Whether the samples of that window extend over 0.6 s on both sides, as they do at 5 Hz.
 CREATE OR REPLACE MACRO whole_jerk_window(t_ns, first_ns, last_ns) AS t_ns - first_ns >= 590_000_000 AND last_ns - t_ns >= 590_000_000;
 
--- An unseen actor approaches the ego at unseen_closing_mps at most. The sum of the half diagonals of two boxes is at most
--- both_half_diagonals_m.
+-- An unseen actor approaches the ego at unseen_closing_mps at most.
 CREATE OR REPLACE MACRO unseen_closing_mps() AS 60.0;
+-- Half the diagonal of the largest lorry (18.75 m by 2.55 m), and the sum of that and the half diagonal of a car.
+CREATE OR REPLACE MACRO largest_half_diagonal_m() AS 9.5;
 CREATE OR REPLACE MACRO both_half_diagonals_m() AS 12.0;
 
 -- A recorder that loses an actor in plain view finds it again within longest_track_gap_ns. A new actor is recorded within track_delay_ns
@@ -59,8 +60,11 @@ CREATE OR REPLACE MACRO blocks_sight(x_m, y_m, dx_m, dy_m, yaw_rad, length_m, wi
 -- The same for a box whose heading or size is not known.
 CREATE OR REPLACE MACRO may_block_sight(x_m, y_m, dx_m, dy_m, half_diagonal_m) AS
     x_m * dx_m + y_m * dy_m BETWEEN 0 AND dx_m ** 2 + dy_m ** 2 AND abs(x_m * dy_m - y_m * dx_m) < half_diagonal_m * sqrt(dx_m ** 2 + dy_m ** 2);
--- Half the diagonal of a box; if its size is not known, that of the largest box.
-CREATE OR REPLACE MACRO box_half_diagonal_m(length_m, width_m) AS coalesce(sqrt(length_m ** 2 + width_m ** 2) / 2, both_half_diagonals_m() / 2);
+-- Half the diagonal of a box; if its size is not known, that of the largest box of its class.
+CREATE OR REPLACE MACRO box_half_diagonal_m(actor_class, length_m, width_m) AS coalesce(
+    sqrt(length_m ** 2 + width_m ** 2) / 2,
+    CASE WHEN coalesce(actor_class IN ('truck', 'bus', 'trailer', 'vehicle', 'object'), true) THEN largest_half_diagonal_m() ELSE both_half_diagonals_m() / 2 END
+);
 -- How far the ego's trailer reaches behind the ego's middle; NULL: no trailer. If its position is not known, it is as long as can be.
 CREATE OR REPLACE MACRO trailer_reach_m(length_m, combination_m) AS
     CASE WHEN combination_m IS DISTINCT FROM length_m THEN coalesce(combination_m, 2 * both_half_diagonals_m()) - length_m / 2 END;

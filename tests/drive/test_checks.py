@@ -264,6 +264,28 @@ def test_sizes_that_vary_are_reported(tmp_path: Path) -> None:
     assert quality(trace)["size_varies"]["actor_id"] == "b"
 
 
+@pytest.mark.parametrize(
+    ("classes", "known"),
+    [
+        (["object"] + ["car"] * 9, "car"),
+        (["object"] * 2 + ["car"] * 8, None),
+        (["pedestrian"] * 5 + ["bicycle"] * 5, None),
+        (["car"] * 5 + ["truck"] * 5, "vehicle"),
+        (["truck"] * 10, "truck"),
+    ],
+)
+def test_a_class_that_changes_is_that_of_nearly_all_samples(
+    tmp_path: Path, classes: list[str], known: str | None
+) -> None:
+    words = '\n[class]\ncolumn = "kind"\n[class.values]\n' + "".join(f'{name} = "{name}"\n' for name in {"car", *classes})
+    lines = ["t,id,x,y,yaw,vx,vy,kind"]
+    for i, kind in enumerate(classes):
+        lines += [f"{i / 10},a,{i},0,0,10,0,car", f"{i / 10},b,{i},6,0,10,0,{kind}"]
+    trace = load(tmp_path, lines, LONG + words)
+    assert actors(trace)["b"]["actor_class"] == known
+    assert ("class_varies" in quality(trace)) == (len(set(classes)) > 1)
+
+
 def test_velocity_zero_of_a_parked_actor_stays(tmp_path: Path) -> None:
     trace = load(tmp_path, edited(cars(), "b", range(20), vx="0.0", x="5.2"))
     assert {row["vx_mps"] for row in states(trace, "b")} == {0.0}

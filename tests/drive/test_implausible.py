@@ -161,6 +161,15 @@ def test_a_speedometers_error_is_none(tmp_path: Path, share: float) -> None:
     assert "velocity_derived" not in checks(drive(tmp_path, car=car))
 
 
+def test_positions_that_freeze_are_no_bias_of_the_velocity(tmp_path: Path) -> None:
+    car = track(15.6)
+    car["x_m"] = np.minimum(car["x_m"], car["x_m"][60])
+    trace = drive(tmp_path, car=car)
+    assert "velocity_derived" not in checks(trace)
+    x_m = [row["x_m"] for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] == "car"]
+    assert x_m[62:] == [None] * 38
+
+
 def dipping(speeds: tuple[float, ...], share: float, *, of: int) -> dict[str, dict[str, Any]]:
     """Return cars of these speeds beside each other, the first `of` of which go `share` of their way in the two steps after 5.0 s."""
     cars = {}

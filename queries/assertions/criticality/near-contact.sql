@@ -12,7 +12,7 @@
 -- observes = "distance between the two"
 -- near_margin = 0.2
 -- merge_gap_s = 2.0
--- reads = ["between_steps", "clearance_least", "ego_state", "pair", "state_dynamics"]
+-- reads = ["between_steps", "clearance_least", "clock", "ego_state", "hidden", "lost_object", "pair", "road_user", "state_dynamics"]
 -- requires = ["ego_size", "speeds"]
 --
 -- [params.least_m]
@@ -41,7 +41,8 @@
 -- @applies
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
     -- The ego does not pass a vehicle on another level. If the level is not known, the rule may not apply.
-    CASE WHEN NOT p.off_level THEN e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies
+    CASE WHEN NOT p.off_level THEN e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies,
+    NULL AS reason
 FROM pair p
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -54,6 +55,18 @@ LEFT JOIN (
 ) c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.object_id = p.object_id
 WHERE coalesce(p.clearance_m, l.least_m, 0.0) <= $near_m AND p.actor_class IS DISTINCT FROM 'object'
     AND coalesce(p.t_ns < c.t_first_ns - ($contact_s * 1e9)::BIGINT OR p.t_ns > c.t_last_ns + ($contact_s * 1e9)::BIGINT, true)
+UNION ALL
+-- The ego may have passed an actor whose track ends nearby, as long as it may be near.
+SELECT l.drive_id, l.ego_id, h.t_ns, l.object_id, CASE WHEN e.speed_mps <= standing_mps() THEN false END,
+    why('recorded_too_short', {'object_id': l.object_id, 'to_ns': last.t_ns, 'far_m': CASE WHEN p.clearance_is_bound THEN p.distance_m ELSE coalesce(p.clearance_m, p.distance_m) END, 'ego_to_ns': c.t_end_ns})
+FROM lost_object l
+JOIN clock c USING (drive_id, ego_id)
+JOIN road_user a ON a.drive_id = l.drive_id AND a.actor_id = l.object_id
+JOIN hidden h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.object_id = l.object_id AND h.t_ns BETWEEN l.t_from_ns AND l.t_to_ns
+CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) last
+LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.object_id = l.object_id AND p.t_ns = last.t_ns
+LEFT JOIN ego_state e ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns = h.t_ns
+WHERE h.least_m <= $near_m AND a.actor_class IS DISTINCT FROM 'object'
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $least_m AS required,

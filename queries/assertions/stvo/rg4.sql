@@ -62,8 +62,12 @@ SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     -- there may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside
     -- (StVO 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
     CASE WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
-        WHEN l.t_ns IS NOT NULL THEN l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps)
+        WHEN l.t_ns IS NOT NULL THEN (
+            l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps)
             OR CASE WHEN c.limit_mps IS NOT NULL OR l.speed_mps <= e.speed_mps AND l.gap_m <= lead_reach_m(e.speed_mps + $slower_mps) THEN false END
+        )
+            -- If it is not known who else is in the way, a slow ego may have a reason.
+            AND CASE WHEN w.known IS DISTINCT FROM false OR e.speed_mps > c.most_mps THEN true END
         WHEN e.speed_mps > c.most_mps THEN true END AS applies
 FROM (
     SELECT *, bool_or(speed_mps <= standing_mps()) OVER (

@@ -12,7 +12,7 @@
 -- observes = "change of speed of the ego or the other"
 -- merge_gap_s = 1.0
 -- tags = ["contact", "standing"]
--- reads = ["between_steps", "ego_state", "lost_object", "pair", "step", "clock"]
+-- reads = ["between_steps", "ego_state", "hidden", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size", "speeds"]
 --
 -- [params.within_m]
@@ -68,7 +68,8 @@ JOIN clock c USING (drive_id, ego_id)
 ASOF JOIN step s ON s.drive_id = l.drive_id AND s.ego_id = l.ego_id AND l.t_from_ns <= s.t_ns
 CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) last
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.object_id = l.object_id AND p.t_ns = last.t_ns
-WHERE l.code IN ('lost_near_ego', 'lost_on_road')
+LEFT JOIN (SELECT drive_id, ego_id, object_id, max(t_ns) AS t_ns FROM hidden WHERE least_m <= 0 GROUP BY ALL) h ON h.drive_id = l.drive_id AND h.ego_id = l.ego_id AND h.object_id = l.object_id
+WHERE l.code IN ('lost_near_ego', 'lost_on_road') OR h.t_ns >= l.t_from_ns
 UNION ALL
 -- An actor that came near between two steps may have touched the ego, too.
 SELECT drive_id, ego_id, t_next_ns, object_id, NULL, why('close_between_samples', {'object_id': object_id}) FROM between_steps

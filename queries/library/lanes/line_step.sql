@@ -135,7 +135,7 @@ lost_passable_object AS (
     SELECT DISTINCT p.drive_id, p.ego_id, p.object_id
     FROM pair p
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
-    WHERE abs(p.d_m) - coalesce(p.lat_half_m, box_half_diagonal_m(p.length_m, p.width_m)) < p.half_width_m + 0.5
+    WHERE abs(p.d_m) - coalesce(p.lat_half_m, box_half_diagonal_m(p.actor_class, p.length_m, p.width_m)) < p.half_width_m + 0.5
         AND may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
 ),
 -- Steps at which the ego may be passing an object without a position on the corridor. An unseen vehicle cannot be in the part of the lane

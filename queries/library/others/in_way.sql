@@ -22,7 +22,7 @@ WITH ahead AS (
         greatest(0.0, coalesce(p.rear_s_m, p.s_m) - e.front_s_m) AS gap_m, e.speed_mps AS ego_speed_mps,
         abs(p.d_m - e.d_m) - coalesce(p.lat_half_m, 0.0) - e.lat_half_m AS across_m,
         -- An object of unknown size takes at least its centre, and may be as large as any box.
-        CASE WHEN p.lat_half_m IS NULL THEN both_half_diagonals_m() / 2 ELSE 0.0 END AS unknown_half_m,
+        CASE WHEN p.lat_half_m IS NULL THEN box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) ELSE 0.0 END AS unknown_half_m,
         in_lane(p.d_m, coalesce(p.lat_half_m, 0.0), p.half_width_m) AS in_lane,
         -- A standing actor needs no heading.
         coalesce(s.vx_mps * cos(p.yaw_rad - p.heading_diff_rad) + s.vy_mps * sin(p.yaw_rad - p.heading_diff_rad), CASE WHEN p.speed_mps <= standing_mps() THEN 0.0 END) AS along_mps,

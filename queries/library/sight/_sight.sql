@@ -34,7 +34,7 @@ box_in_range AS (
         coalesce(p.rear_s_m, p.s_m - r.half_diagonal_m) - e.front_s_m AS lane_m
     FROM viewpoint e
     JOIN pair p USING (drive_id, ego_id, t_ns)
-    CROSS JOIN LATERAL (SELECT box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m) r
+    CROSS JOIN LATERAL (SELECT box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) AS half_diagonal_m) r
     WHERE p.distance_m < e.range_m
 ),
 nearest_box AS (
@@ -95,10 +95,10 @@ hidden_place AS (
         SELECT a.drive_id, a.ego_id, a.t_ns, a.along_m
         FROM lane_place a
         CROSS JOIN LATERAL (SELECT sqrt(a.dx_m ** 2 + a.dy_m ** 2) AS distance_m) x
-        JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + box_half_diagonal_m(p.length_m, p.width_m)
+        JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + box_half_diagonal_m(p.actor_class, p.length_m, p.width_m)
             AND coalesce(
                 blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m),
-                may_block_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, box_half_diagonal_m(p.length_m, p.width_m))
+                may_block_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, box_half_diagonal_m(p.actor_class, p.length_m, p.width_m))
             )
         UNION ALL
         -- A row with NULL for each step, for steps at which nothing blocks the view; otherwise min() ignores it. A left join with

@@ -99,7 +99,7 @@ credible_pair AS (
 ),
 sighting AS (
     SELECT
-        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m,
+        p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) AS half_diagonal_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
         -- How far beside the ego's lane the object is, and how fast it may come nearer to that lane. The first velocity of a track may be
@@ -142,7 +142,7 @@ written_sample AS (
 -- allow.
 step_with_sightings AS (
     SELECT
-        m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_diagonal_m, a.half_diagonal_m), box_half_diagonal_m(NULL, NULL)) AS half_diagonal_m,
+        m.*, b.t_ns AS t_before_ns, a.t_ns AS t_after_ns, r.road, e.speed_mps, e.front_s_m + r.offset_m AS front_m, e.rear_s_m + r.offset_m AS rear_m, e.length_m, e.width_m, e.combination_m, coalesce(greatest(b.half_diagonal_m, a.half_diagonal_m), box_half_diagonal_m(m.actor_class, NULL, NULL)) AS half_diagonal_m,
         coalesce(
             g.in_sight AND m.is_unrecorded AND coalesce(wb.t_ns, wa.t_ns) IS NOT NULL
             AND (wb.t_ns IS NULL OR m.t_ns > tb.plain_ns) AND (wa.t_ns IS NULL OR m.t_ns < ta.plain_ns), false
@@ -193,7 +193,7 @@ station_range AS (
 distance_bound AS (
     SELECT
         drive_id, ego_id, t_ns, object_id, actor_class, late, beside_lane, t_before_ns, t_after_ns, road, speed_mps, coalesce(last_place, next_place) IS NOT NULL AS is_on_road,
-        half_diagonal_m + greatest(box_half_diagonal_m(length_m, width_m), trailer_reach_m(length_m, combination_m)) AS half_sizes_m,
+        half_diagonal_m + greatest(box_half_diagonal_m(NULL, length_m, width_m), trailer_reach_m(length_m, combination_m)) AS half_sizes_m,
         greatest(least_since_m, least_until_m, sqrt(last_x_m ** 2 + last_y_m ** 2) - strays_m(actor_class, since_s), sqrt(next_x_m ** 2 + next_y_m ** 2) - strays_m(actor_class, until_s), sqrt(between_x_m ** 2 + between_y_m ** 2) - between_error_m, sqrt(since_x_m ** 2 + since_y_m ** 2) - since_error_m, sqrt(until_x_m ** 2 + until_y_m ** 2) - until_error_m, ahead_m, behind_m, CASE WHEN off_ahead_m IS NOT NULL THEN least(off_ahead_m, off_behind_m) END) AS distance_m,
         greatest(from_m - front_m, rear_m - to_m) AS along_m, off_ahead_m - half_diagonal_m AS off_ahead_m,
         CASE WHEN ahead_m > 0 OR from_m > front_m THEN true WHEN behind_m > 0 OR to_m < rear_m THEN false END AS ahead,
@@ -230,13 +230,13 @@ object_ahead_or_behind AS (
     )
 ),
 incomplete_pair AS (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, distance_m, x_m, y_m, box_half_diagonal_m(actor_class, length_m, width_m) AS half_diagonal_m, both_half_diagonals_m() AS least_sizes_m, false AS along
     FROM pair
     WHERE x_m IS NOT NULL AND y_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 ),
 -- Objects off the lanes and beyond the end of the corridor: they may be on a part of the road that the map lacks.
 pair_beyond_corridor AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) AS half_diagonal_m, both_half_diagonals_m() AS least_sizes_m, false AS along
     FROM unplaced u
     JOIN pair p ON p.drive_id = u.drive_id AND p.ego_id = u.ego_id AND p.t_ns = u.t_ns AND p.object_id = u.object_id
     JOIN ego_state e ON e.drive_id = u.drive_id AND e.ego_id = u.ego_id AND e.t_ns = u.t_ns
@@ -247,7 +247,7 @@ pair_beyond_corridor AS (
     -- Without a map: objects further away than the end of the ego's own path.
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m,
-        box_half_diagonal_m(p.length_m, p.width_m) + box_half_diagonal_m(e.length_m, e.width_m) AS half_sizes_m,
+        box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) AS half_diagonal_m, 0.0 AS least_sizes_m,
         -- An object that stands or moves away does not come towards the ego.
         coalesce(p.speed_mps <= standing_mps() OR (p.x_m - e.x_m) * cos(p.yaw_rad) + (p.y_m - e.y_m) * sin(p.yaw_rad) > 0, false) AS along
     FROM pair p
@@ -258,7 +258,7 @@ pair_beyond_corridor AS (
 ),
 hole_bucket AS (SELECT *, unnest(range(floor(end_m / 500)::BIGINT - 2, floor(end_m / 500)::BIGINT + 1)) AS bucket FROM lane_hole),
 pair_in_hole AS (
-    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
+    SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.actor_class, p.length_m, p.width_m) AS half_diagonal_m, both_half_diagonals_m() AS least_sizes_m, false AS along
     FROM ego_state e
     JOIN hole_bucket l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.chain_id = e.chain_id AND l.bucket = floor(e.s_m / 500)::BIGINT
     JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns
@@ -276,8 +276,9 @@ UNION ALL
 SELECT
     h.drive_id, h.ego_id, h.t_ns, h.object_id, h.actor_class, may_be_vehicle(h.actor_class),
     -- The trailer is behind the ego.
-    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - greatest(h.half_sizes_m, both_half_diagonals_m() / 2 + trailer_reach_m(e.length_m, e.combination_m))),
-    CASE WHEN h.distance_m > h.half_sizes_m THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
-    h.along, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - h.half_sizes_m), false
+    greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - greatest(x.half_sizes_m, greatest(h.least_sizes_m / 2, h.half_diagonal_m) + trailer_reach_m(e.length_m, e.combination_m))),
+    CASE WHEN h.distance_m > x.half_sizes_m THEN (h.x_m - e.x_m) * cos(e.yaw_rad) + (h.y_m - e.y_m) * sin(e.yaw_rad) > 0 END,
+    h.along, false, greatest(0.0::DOUBLE, coalesce(h.distance_m, 0.0) - x.half_sizes_m), false
 FROM (SELECT * FROM incomplete_pair UNION ALL SELECT * FROM pair_beyond_corridor UNION SELECT * FROM pair_in_hole) h
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
+CROSS JOIN LATERAL (SELECT greatest(h.least_sizes_m, h.half_diagonal_m + box_half_diagonal_m(NULL, e.length_m, e.width_m)) AS half_sizes_m) x

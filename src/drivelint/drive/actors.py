@@ -42,6 +42,9 @@ LEAST_LENGTH_AND_WIDTH_M: Final = {
 is no upper limit per class: a lorry that is recorded as a car has the right size."""
 MOST_LENGTH_AND_WIDTH_M: Final = (60.0, 8.0)
 """Length and width (m) that no road user exceeds."""
+LEAST_SHARE_OF_CLASS: Final = 0.9
+"""If a log changes its mind about the class of an actor, the class is known that at least this share of its samples has."""
+NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 LARGEST_SIZE_SPREAD_M = 0.05
 """If the sizes of a track differ by more than this, they are estimates, and a finding reports it."""
 
@@ -56,15 +59,9 @@ class Actors:
 
 
 def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
-    """Return each actor's class (the first known one) and sizes (the median of the known ones), and findings. `states` in order."""
+    """Return each actor's class (see `_classes`) and sizes (the median of the known ones), and findings. `states` in order."""
     starts = track_starts(states.actor)
-    classes: list[str | None] = [None] * len(states.ids)
-    codes = states.codes.get("actor_class")
-    if codes is not None and len(states):
-        known = np.flatnonzero(codes >= 0)
-        actors, first = np.unique(states.actor[known], return_index=True)
-        for actor, row in zip(actors, known[first], strict=True):
-            classes[actor] = ACTOR_CLASSES[codes[row]]
+    classes, findings = _classes(states)
     sizes, varying = {}, set()
     for name in SIZE_COLUMNS:
         values = states.numbers.get(name)
@@ -81,12 +78,43 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
                 varying.add(states.ids[i])
             low[i] = track[(len(track) - 1) // 2]
         sizes[name] = low
-    findings = []
     if varying:
         ids = sorted(varying)
         message = f"box size changes over the log ({name_list(ids)}): the median is used throughout"
         findings.append(QualityFinding.of_actors("size_varies", "warning", message, ids))
     return Actors(states.ids, classes, sizes), findings
+
+
+def _classes(states: States) -> tuple[list[str | None], list[QualityFinding]]:
+    """Return each actor's class, and a finding for the actors whose class changes.
+
+    Such an actor has the class of nearly all its samples; without one, it is a vehicle of unknown kind or of unknown class (None).
+    """
+    classes: list[str | None] = [None] * len(states.ids)
+    codes = states.codes.get("actor_class")
+    if codes is None or not len(states):
+        return classes, []
+    known = np.flatnonzero(codes >= 0)
+    actor, code = states.actor[known], codes[known]
+    first = np.full(len(states.ids), -1)
+    actors, rows = np.unique(actor, return_index=True)
+    first[actors] = code[rows]
+    for number in actors:
+        classes[number] = ACTOR_CLASSES[first[number]]
+    changing = np.unique(actor[code != first[actor]])
+    for number in changing:
+        counts = np.bincount(code[actor == number], minlength=len(ACTOR_CLASSES))
+        most = int(counts.argmax())
+        if counts[most] >= LEAST_SHARE_OF_CLASS * counts.sum():
+            classes[number] = ACTOR_CLASSES[most]
+        else:
+            seen = {ACTOR_CLASSES[i] for i in np.flatnonzero(counts)}
+            classes[number] = None if seen & NO_VEHICLES else "vehicle"
+    if not len(changing):
+        return classes, []
+    ids = [states.ids[number] for number in changing]
+    message = f"the class changes over the log ({name_list(ids)}): if no class has nine tenths of the samples, it is unknown"
+    return classes, [QualityFinding.of_actors("class_varies", "warning", message, ids)]
 
 
 def from_table(table: pa.Table, states: States, old_id_by_id: Mapping[str, str]) -> Actors:

@@ -38,6 +38,8 @@ BIAS_LEAST_M = 50.0
 BIAS_LEAST_MPS = 2.0
 """Over 50 m, the ratio of velocities to the motion of the positions is known to about 1 %. Up to 5 % is accepted, as speedometers, and
 velocities of an axle in a bend, are that inexact."""
+FROZEN_SHARE = 0.1
+"""Positions are frozen if, over one second, they move by less than this share of the way at the recorded velocity."""
 LEAST_MISMATCHING_WINDOWS = 20
 """At least this many one-second windows must mismatch; single steps are too noisy to compare."""
 
@@ -155,15 +157,39 @@ def _actors_with_velocity_mismatch(states: States, step: Steps, most_replaced_sh
 def _actors_with_biased_speed(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Return the mask of actors whose velocities differ from the motion of their positions by a constant factor.
 
-    The factor must show in both halves of the track: a single displacement of a track is a different error.
+    The factor must show in both halves of the track: a single displacement of a track is a different error. So are positions that stay
+    the same although the velocity goes on: see `contradiction`.
     """
     biased, n = np.zeros(len(states.ids), np.bool_), len(states)
     if n < 3 or most_replaced_share == 0.0:
         return biased
     known = steps_with_known_motion(states, step)
+    if _actors_with_factor(states, step, known, most_replaced_share).any():
+        known &= ~_frozen_steps(states, step, known)
+        return _actors_with_factor(states, step, known, most_replaced_share)
+    return biased
+
+
+def _frozen_steps(states: States, step: Steps, known_steps: Mask) -> Mask:
+    """Return the mask of the steps (n - 1) within a second in which the positions are frozen."""
+    n = len(states)
+    k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
+    if n <= k:
+        return np.zeros(n - 1, np.bool_)
+    went, led, whole, _ = motion_over_steps(states, step, known_steps, k)
+    first = np.flatnonzero(whole & (np.hypot(*went) < FROZEN_SHARE * np.hypot(*led)))
+    edges = np.zeros(n, np.int64)
+    np.add.at(edges, first, 1)
+    np.add.at(edges, first + k, -1)
+    frozen: Mask = np.cumsum(edges[:-1]) > 0
+    return frozen
+
+
+def _actors_with_factor(states: States, step: Steps, known_steps: Mask, most_replaced_share: float) -> Mask:
+    biased = np.zeros(len(states.ids), np.bool_)
     v = (states.velocity[:, 1:] + states.velocity[:, :-1]) / 2.0
     speed = np.hypot(*v)
-    moving = known & (speed > BIAS_LEAST_MPS)
+    moving = known_steps & (speed > BIAS_LEAST_MPS)
     led = np.where(moving, speed * step.dt_s, 0.0)
     # projected on the velocity, so that lateral noise and noise at a standstill add nothing
     went = np.where(moving, np.sum(np.diff(states.place) * v, axis=0) / np.where(moving, speed, 1.0), 0.0)
