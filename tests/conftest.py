@@ -41,13 +41,14 @@ SIDES: Final = {"lht": 0, "left": 0, "rht": 1, "right": 1}
 
 TOGETHER: Final = {
     "tests/fleet_report": "fleet_report",
+    "tests/hostile": "hostile",
     "tests/incident": "incident",
     "tests/pack": "pack",
     "tests/report": "report",
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1)}
+FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1), "tests/faults": (1, 9)}
 """Folder -> so many cases of each of its tests are quick, and so many more `ci`; others are slow, unless the test is marked `sample`."""
 LATER: Final = ROOT / "tests" / "derive"
 """The folder of which no test is quick: to answer the scenes of fifteen files takes half a minute, however few are asked for."""

@@ -408,6 +408,7 @@ def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
     assert ran("rules", "show", "nothing-like-it")[0] == 2
 
 
+@pytest.mark.sample(6, ci=14)
 @pytest.mark.parametrize(
     ("content", "told"),
     [

@@ -143,6 +143,7 @@ def test_drivable_lanes_are_polygons(annotated: Path) -> None:
             assert min(metres_apart(at, there) for at in ring) < 0.02
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("reference", [None, "+proj=tmerc +lat_0=0 +lon_0=0"])
 def test_without_a_usable_reference_there_is_none(tmp_path: Path, reference: str | None) -> None:
     given = road(tmp_path, reference) if reference else CASE / "road.xodr"

@@ -160,6 +160,7 @@ def test_findings_of_two_egos_have_two_ids(con: duckdb.DuckDBPyConnection, tmp_p
     assert con.execute("SELECT count(*), count(DISTINCT finding_id) FROM finding").fetchall() == [(3, 3)]
 
 
+@pytest.mark.ci
 def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
     """The guard of the catalogue can fail: a residual that is no comparison in an outer join."""
     sql = SPEED.replace("FROM ego_state", "FROM ego_state e LEFT JOIN pair p USING (drive_id, ego_id)").replace(
