@@ -48,7 +48,7 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1), "tests/faults": (1, 9)}
+FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1)}
 """Folder -> so many cases of each of its tests are quick, and so many more `ci`; others are slow, unless the test is marked `sample`."""
 LATER: Final = ROOT / "tests" / "derive"
 """The folder of which no test is quick: to answer the scenes of fifteen files takes half a minute, however few are asked for."""

@@ -121,6 +121,7 @@ def test_with_heights_the_other_level_changes_no_verdict(name: str, variant: str
     assert {row["rule_id"] for row in found if row["object_id"] is not None} <= {CONTACT}
 
 
+@pytest.mark.ci
 @EACH
 @pytest.mark.parametrize("variant", ["map", "none"])
 def test_without_the_heights_of_the_log_what_depends_on_them_is_unknown(name: str, variant: str) -> None:

@@ -26,9 +26,7 @@ READS = {"reads": '["ego_state"]'}
 
 @pytest.fixture
 def con() -> Iterator[duckdb.DuckDBPyConnection]:
-    with store.open_without_creating_tables() as con:
-        store.create_tables(con)
-        store.create_macros(con)
+    with store.connect() as con:
         for drive, ego in (("a", "1"), ("a", "2"), ("b", "1")):
             who = {"drive_id": drive, "ego_id": ego}
             insert_rows(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])
