@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
     from shapely.geometry import Polygon
 
+# quick tests hold the same table against the fixture's logs (test_cli), and these logs against what nobody saw (test_honesty)
+pytestmark = pytest.mark.ci
+
 RUNS = ("safe", "near_miss", "collision")
 PAPER_REQUIRED = {"relaxed": 101.39, "nominal": 63.73, "aggressive": 40.02}
 PAPER_AHEAD = {"safe": 76.43, "near_miss": 58.33, "collision": 35.63}

@@ -408,6 +408,7 @@ def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
     assert ran("rules", "show", "nothing-like-it")[0] == 2
 
 
+@pytest.mark.sample(6, ci=14)
 @pytest.mark.parametrize(
     ("content", "told"),
     [
@@ -446,6 +447,7 @@ SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10.0::DOUBLE AS r
 RULE = invariant(SPEED)
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("expect", ["pass", "fail"])
 def test_rules_test_runs_the_cases_of_a_folder(tmp_path: Path, expect: str, ran: Ran) -> None:
     pack = tmp_path / "mine"

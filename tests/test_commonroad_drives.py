@@ -52,6 +52,7 @@ def test_the_vehicle_that_crosses_a_solid_line_fails(peach: Mapping[tuple[str, s
     assert "fail" not in {verdict for ego, verdict in found.items() if ego != "569"}
 
 
+@pytest.mark.ci
 def test_limits_of_an_older_scenario_are_judged() -> None:
     """Two never move. Unknown: nine whose speeds their positions contradict for a while.
 

@@ -86,10 +86,11 @@ def test_no_verdict_over_a_lost_chunk(tmp_path: Path, good: Path) -> None:
     assert hole[0] <= lost["t_first_ns"] <= hole[0] + PERIOD_NS
     for row in rows:
         assert row["verdict"] != "pass" or row["t_end_ns"] <= hole[0] or row["t_start_ns"] >= hole[1]
-    alone = drivelint.check([good], rules=NO_COLLISION, annotate=False)
+    alone = drivelint.check([good], rules=NO_COLLISION, annotate=False, robustness=False)
     assert verdicts(result, "good") == verdicts(alone, "good")
 
 
+@pytest.mark.ci
 def test_one_lost_frame_is_a_hole_too(tmp_path: Path) -> None:
     """Two periods without a frame are none where nobody knows that one was recorded; here it is known."""
     data = written(tmp_path, use_chunking=False)
@@ -115,7 +116,7 @@ def test_a_judged_step_that_fails_stands(tmp_path: Path, at: int) -> None:
     assert result.exit_code == 1
 
 
-@pytest.mark.sample(2, ci=3)
+@pytest.mark.sample(1, ci=4)
 @pytest.mark.parametrize(
     ("damage", "code", "told"),
     [
@@ -148,6 +149,7 @@ def test_faults(tmp_path: Path, good: Path, damage: Any, code: int, told: str) -
     assert {found["verdict"] for found in verdicts(result, "good")} == {"pass"}
 
 
+@pytest.mark.ci
 def test_a_damaged_log_is_annotated_without_its_own_messages(tmp_path: Path) -> None:
     path = tmp_path / "bad.mcap"
     path.write_bytes(without_chunk(written(tmp_path), 4))

@@ -305,6 +305,10 @@ def test_several_reports_are_written_by_one_command(ran: Ran, results: dict[str,
     assert (code, [Path(line).name for line in out.splitlines()]) == (0, ["report.sarif", "report.md"])
     code, _, err = ran("check", SAFE, *ON_ROAD, *SDA, "--report", "sarif")
     assert (code, "--out" in err) == (2, True)
+
+
+@pytest.mark.ci
+def test_a_check_writes_several_reports(ran: Ran) -> None:
     command = [
         "check",
         SAFE,

@@ -221,6 +221,7 @@ def test_rows_of_tables_that_cannot_be_read(tmp_path: Path) -> None:
     assert len(found) == 2 * len(MAPPED)
 
 
+@pytest.mark.ci
 def test_a_wide_table_with_somebody_without_a_name(tmp_path: Path) -> None:
     found = verdicts(tmp_path, {"wide": wide_csv}, mapping=mapping(tmp_path, WIDE))
     assert found == dict.fromkeys(found, (True, {"unknown"}))

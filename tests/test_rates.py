@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
 from tests.scenes import drive, judged, moving, road, times
 
+if TYPE_CHECKING:
+    from drivelint.engine.batch import Drive
+
 RATES = (20, 10, 5)
 
 
-def comfort(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.0) -> str:
-    """Return nuPlan's verdict on an ego that brakes for 3 s, after a ramp of so many seconds, and then accelerates, at this rate."""
+def braking(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.0) -> Drive:
+    """Return an ego that brakes for 3 s, after a ramp of so many seconds, and then accelerates, at this rate."""
     way = road(((900.0, 0.0),))
     fine = np.arange(0, 14.0001, 0.001)
     moments = [0, 4, 4 + ramp_s, 7 + ramp_s, 7 + 2 * ramp_s, 10]
@@ -20,8 +25,7 @@ def comfort(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.
     place = 50 + np.cumsum(speed) * 0.001
     t = times(14.0, period=1 / rate)
     ego = moving("ego", way, t, np.interp(t, fine, place), way.own)
-    (row,) = judged([drive([ego], way.environment)], rules=["comfort.nuplan"])
-    return str(row["verdict"])
+    return drive([ego], way.environment, drive_id=f"{rate} Hz")
 
 
 @pytest.mark.sample(2, ci=2)
@@ -37,4 +41,6 @@ def comfort(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.
     ],
 )
 def test_comfort(hardest_mps2: float, ramp_s: float, then_mps2: float, verdict: str) -> None:
-    assert [comfort(rate, hardest_mps2, ramp_s, then_mps2) for rate in RATES] == [verdict] * 3
+    rows = judged([braking(rate, hardest_mps2, ramp_s, then_mps2) for rate in RATES], rules=["comfort.nuplan"])
+    assert {row["drive_id"]: row["verdict"] for row in rows} == {f"{rate} Hz": verdict for rate in RATES}
+    assert len(rows) == len(RATES)

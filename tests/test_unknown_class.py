@@ -68,6 +68,7 @@ def unsaid(drive: Drive) -> Iterator[tuple[str, Drive]]:
                 yield f"{actor['actor_id']} {word}", classed(drive, actor["actor_id"], word)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("nation", "chapter"),
     [

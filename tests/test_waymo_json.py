@@ -63,6 +63,7 @@ def test_the_recorder_is_waymos_car(name: str, tmp_path: Path) -> None:
     assert (ego["length_m"], ego["width_m"]) == (pytest.approx(5.286), pytest.approx(2.332))
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize(
     ("name", "n_lanes", "n_left_out"),
     [("gpudrive_w4", 37, 0), ("gpudrive_w407", 76, 0), ("nocturne_n171", 210, 2), ("nocturne_n65", 74, 0)],

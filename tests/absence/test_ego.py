@@ -156,6 +156,7 @@ def test_the_recorders_own_ego_is_missed_among_all(tmp_path: Path) -> None:
     assert absence(drive)
 
 
+@pytest.mark.ci
 def test_a_place_that_is_not_recorded_is_none(tmp_path: Path) -> None:
     """The ego is named in every frame, and without a position in most of them."""
     truths = drives.osi_with_host(drives.drive(), range(0), None)

@@ -139,6 +139,7 @@ def test_a_folder_without_permission(logs: Path) -> None:
     assert (code, status) == (4, {"sound.mcap": "judged", "barred": "not_judged"})
 
 
+@pytest.mark.ci
 def test_links_that_hide_nothing_are_no_matter(logs: Path, tmp_path: Path) -> None:
     """To what is searched anyway, to a log, and to what can hold none."""
     (logs / "sub").mkdir()

@@ -21,6 +21,7 @@ def moving(parent: str) -> list[ros.Message]:
     return [ros.transform(t_s, parent, "base_link", *along(t_s), yaw=TURN) for t_s in ticks()]
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize(
     ("bag", "parents", "follows"),
     [

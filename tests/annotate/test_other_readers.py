@@ -19,6 +19,9 @@ from tests.annotate.runs import CASE, run, the
 SCRIPT = Path(__file__).with_name("read_with_mcap_core.cjs")
 
 
+pytestmark = pytest.mark.ci
+
+
 @pytest.fixture(scope="module")
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return the(run(tmp_path_factory.mktemp("read"), CASE / "collision.csv"), "collision")

@@ -71,6 +71,7 @@ def features(path: Path, kind: str) -> list[dict[str, Any]]:
     return [feature for feature in content["features"] if feature["properties"]["kind"] == kind]
 
 
+@pytest.mark.ci
 def test_where_the_ego_is(annotated: Path) -> None:
     states, fixes = ego_states(), messages(annotated, "location")
     times = [said.log_time for said in fixes]
@@ -89,6 +90,7 @@ def test_where_the_ego_is(annotated: Path) -> None:
         )
 
 
+@pytest.mark.ci
 def test_the_messages_are_those_of_foxgloves_package(annotated: Path) -> None:
     package = pytest.importorskip("foxglove.messages", reason="the package foxglove-sdk is not installed")
     fix = messages(annotated, "location")[3].content
@@ -101,6 +103,7 @@ def test_the_messages_are_those_of_foxgloves_package(annotated: Path) -> None:
     assert type(layer.content).FromString(package.GeoJson(geojson=layer.content.geojson).encode()) == layer.content
 
 
+@pytest.mark.ci
 def test_findings_are_points_on_the_map(annotated: Path) -> None:
     rows = {row["finding_id"]: row for row in pq.read_table(annotated.parents[1] / "findings.parquet").to_pylist()}
     found = features(annotated, "finding")
@@ -115,6 +118,7 @@ def test_findings_are_points_on_the_map(annotated: Path) -> None:
         assert metres_apart(feature["geometry"]["coordinates"], there) < 0.02
 
 
+@pytest.mark.ci
 def test_the_way_of_the_ego_is_a_line(annotated: Path) -> None:
     (way,) = features(annotated, "way")
     assert (way["geometry"]["type"], way["properties"]["name"]) == ("LineString", "ego")
@@ -124,6 +128,7 @@ def test_the_way_of_the_ego_is_a_line(annotated: Path) -> None:
         assert metres_apart(at, there) < 0.02
 
 
+@pytest.mark.ci
 def test_drivable_lanes_are_polygons(annotated: Path) -> None:
     environment = load_map(read_source(CASE / "road.xodr"))
     drivable = {row["lanelet_id"] for row in environment.tables["lanelet"].to_pylist() if row["drivable"]}
@@ -143,6 +148,7 @@ def test_drivable_lanes_are_polygons(annotated: Path) -> None:
             assert min(metres_apart(at, there) for at in ring) < 0.02
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("reference", [None, "+proj=tmerc +lat_0=0 +lon_0=0"])
 def test_without_a_usable_reference_there_is_none(tmp_path: Path, reference: str | None) -> None:
     given = road(tmp_path, reference) if reference else CASE / "road.xodr"

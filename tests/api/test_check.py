@@ -478,6 +478,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.ci
 def test_an_interrupt_is_an_interrupt(drives: Path) -> None:
     """Also while DuckDB computes in the main thread, which raises an error of its own then."""
     env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}

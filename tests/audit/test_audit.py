@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from drivelint.audit import AuditSummary
 
-N_DRIVES = 24
+N_DRIVES = 12
 
 
 @pytest.fixture(scope="module")

@@ -34,7 +34,7 @@ from tests.audit.here import InThisProcess, judged
 def once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
     """Return an audit with contacts, and in how many drives; nobody may alter it."""
     home = tmp_path_factory.mktemp("audited")
-    few = fleet.write(home / "fleet", 12)
+    few = fleet.write(home / "fleet", 7)
     assert len(few.planted) > 1
     judged(few, home / "out")
     return home / "out", len(few.planted)

@@ -155,6 +155,7 @@ def test_the_newest_name_is_taken() -> None:
     assert owner_of("x", (("gone", "x"), ("pathlib", "Path.cwd"), ("pathlib", "Path.home"))) == (Path, "cwd")
 
 
+@pytest.mark.ci
 def test_a_stage_that_was_never_called_is_named(tmp_path: Path) -> None:
     place = Place(tmp_path, TINY)
     job = Job("", "", str(tmp_path / "out"), [str(place.reference)], str(place.road), ["ukhc.no-collision"], None)

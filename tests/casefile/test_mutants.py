@@ -117,6 +117,7 @@ def test_good_cases_notice_every_mutant(tmp_path: Path) -> None:
     assert (proof.ok, proof.n_noticed) == (True, 4)
 
 
+@pytest.mark.ci
 def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> None:
     rule = with_cases(measured(tmp_path), LOOSE)
     proof = mutation.judge_mutants(rule)

@@ -29,6 +29,7 @@ def table(folder: Path, cases: str = CASES, select: str = SELECT) -> LibraryTabl
     return LibraryTable("ego_mode", "log", folder / "ego_mode.sql", "", "", select)
 
 
+@pytest.mark.sample(4, ci=9)
 @pytest.mark.parametrize("topic", TOPICS)
 def test_cases_of_the_library_pass(topic: str) -> None:
     tables = [

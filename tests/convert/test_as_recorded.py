@@ -121,6 +121,7 @@ def same(one: Trace, other: Trace) -> None:
     assert found(one) == found(other)
 
 
+@pytest.mark.sample(6, ci=12)
 @pytest.mark.parametrize("to", TO)
 @pytest.mark.parametrize("check", DOUBTS)
 def test_what_is_doubted_stays_and_is_said(tmp_path: Path, check: str, to: Target) -> None:

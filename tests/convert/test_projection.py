@@ -38,6 +38,7 @@ def test_it_is_kept(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch)
     np.testing.assert_allclose(numbers(drive.trace)["x_m"], numbers(plain())["x_m"], atol=1e-3)
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("to", TO)
 def test_on_a_given_map_it_is_the_maps(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     given = road(tmp_path)

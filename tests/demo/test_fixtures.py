@@ -61,6 +61,7 @@ def sections(text: str) -> dict[str, list[str]]:
     return {lines[0].partition(":")[0]: [line.strip() for line in lines[1:]] for lines in blocks}
 
 
+@pytest.mark.ci
 def test_the_verdicts_are_those_that_were_reviewed(said: str) -> None:
     committed = sections((FOLDER / MAKE["VERDICTS"]).read_text(encoding="utf-8"))
     now = sections(said)
@@ -69,6 +70,7 @@ def test_the_verdicts_are_those_that_were_reviewed(said: str) -> None:
         assert now[name] == lines, f"{name}: {AGAIN}"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("ending", ["", "-25mph"])
 def test_the_nine_verdicts_come_out_at_both_speeds(said: str, ending: str) -> None:
     found: dict[str, dict[str, str]] = {}
@@ -91,6 +93,7 @@ def test_the_overtakes_end_as_their_names_say(scene: Any) -> None:
     assert separation(ego, parked).min() > 1.5
 
 
+@pytest.mark.ci
 def test_no_failure_in_the_clean_drive(said: str) -> None:
     words = [line.split() for line in sections(said)["clean-drive"]]
     # a log of positions and indicators has nothing of lamps and horn: it is not asked about them

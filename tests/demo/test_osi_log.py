@@ -66,6 +66,7 @@ def test_lights_are_told_as_they_are(tmp_path: Path) -> None:
     assert {(row["indicator"], row["brake_light"]) for row in rows if row["actor_id"] == "2"} == {(None, None)}
 
 
+@pytest.mark.sample(10, ci=18)
 @pytest.mark.parametrize("scene", all_scenes(), ids=lambda scene: scene.name)
 def test_a_scene_in_memory_is_what_ingest_reads(scene: Scene, tmp_path: Path) -> None:
     path = tmp_path / f"{scene.name}.mcap"

@@ -46,6 +46,7 @@ def said(drive: Drive) -> dict[str, tuple[str, str]]:
     return {row["check_id"]: (row["severity"], row["message"]) for row in rows}
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize(("reference", "offset"), FRAMES)
 def test_states_are_those_of_the_maps_frame(tmp_path: Path, reference: str, offset: tuple[float, float, float]) -> None:
     here, drive = numbers(plain()), judged(in_frame(reference, offset), road(tmp_path))

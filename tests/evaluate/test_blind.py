@@ -56,6 +56,7 @@ def test_a_stretch_without_place_or_heading_or_indicator(tmp_path: Path) -> None
         assert brief(said(tmp_path, state, needs=other)) == [("not_applicable", "not_triggered")]
 
 
+@pytest.mark.ci
 def test_each_ego_and_drive_by_itself_and_what_is_said_already_is_not_said_twice(tmp_path: Path) -> None:
     whole = {"t_s": "0..9 by 0.1"}
     blind = whole | {"x_m": {"else": 1, "3..5": None}, "speed_mps": {"else": 12, "4": None}}

@@ -51,7 +51,7 @@ def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
     return scene | ({} if at is None else {"exit_taken": {"t_s": at}})
 
 
-@pytest.mark.sample(3, ci=9)
+@pytest.mark.sample(2, ci=10)
 @pytest.mark.parametrize(
     ("applies", "given", "expected"),
     [
@@ -125,7 +125,7 @@ def test_the_words_of_an_unknown_condition(tmp_path: Path, applies: str, words: 
     assert row["reason"] == words
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize(
     ("law", "nation", "judged"),
     [
@@ -190,6 +190,7 @@ def test_a_signal_is_not_missed_where_known_conditions_exclude_the_rule(
         assert found[0]["assumes"] is None
 
 
+@pytest.mark.ci
 def test_each_drive_has_its_own_nation(tmp_path: Path) -> None:
     scene = {
         "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1], "speed_mps": [9, 12]} for e in "abc"],
@@ -224,6 +225,7 @@ def test_a_step_without_conditions_is_a_step_at_which_they_are_not_known(tmp_pat
     assert (row["verdict"], row["reason_code"], row["n_judged"]) == ("unknown", "weather_unknown", 2)
 
 
+@pytest.mark.ci
 def test_only_the_steps_at_which_a_condition_holds_are_judged(tmp_path: Path) -> None:
     wet = ["dry", "wet", "wet", "wet", "dry", "dry", "dry", "wet"]
     rows = verdicts(invariant(tmp_path, 'weather = ["wet"]'), drive([9, 12, 9, 12, 9, 9, 9, 12], weather=wet))
@@ -287,7 +289,7 @@ def test_one_ego_by_hand_leaves_the_others_alone(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(2, ci=3)
 @pytest.mark.parametrize(
     ("quantifier", "speeds", "engaged", "expected"),
     [
@@ -311,6 +313,7 @@ def test_a_window_in_which_the_human_takes_over(
     assert brief(verdicts(rule, drive(speeds, at=0.1, engaged=engaged))) == [expected]
 
 
+@pytest.mark.ci
 def test_an_anchor_that_the_human_drove_past_is_unknown(tmp_path: Path) -> None:
     rule = at_event(tmp_path, kind=PLACE_BEFORE, anchor="SELECT ref_id, t_ns - 200000000 AS t_ns FROM reference")
     for engaged, expected in ((True, ("pass", "kept")), (False, ("unknown", "not_engaged"))):
@@ -318,6 +321,7 @@ def test_an_anchor_that_the_human_drove_past_is_unknown(tmp_path: Path) -> None:
         assert brief(verdicts(rule, scene)) == [expected]
 
 
+@pytest.mark.ci
 def test_nobody_beside_a_human_is_not_claimed(tmp_path: Path) -> None:
     reads = {"reads": '["exit_taken", "pair"]', "combine": '"all"', "window_s": "0.1"}
     rule = write(tmp_path, AFTER | MEASURED | reads, {"reference": REFERENCE, "condition": PAIR_SQL})

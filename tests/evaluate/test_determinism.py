@@ -127,6 +127,7 @@ def test_rules_are_judged_on_two_connections_as_on_one(
         assert result(con, rules) == crowd
 
 
+@pytest.mark.ci
 def test_a_rule_that_errs_is_an_error_on_whatever_connection(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     reads = {"reads": '["ego_state"]'}
     good = "SELECT drive_id, ego_id, t_ns, x_m >= 0 AS holds FROM ego_state"

@@ -62,6 +62,7 @@ def test_a_single_doubted_step_counts_as_not_recorded(tmp_path: Path, speed: Any
     assert (row["verdict"], row["t_worst_ns"]) == ("fail", 1_100_000_000)
 
 
+@pytest.mark.ci
 def test_the_last_step_is_not_between_two(tmp_path: Path) -> None:
     assert brief(verdicts(speed_rule(tmp_path), drive() | doubt("e", "velocity", (1.95, 2.0)))) == [
         ("unknown", "doubted")
@@ -105,6 +106,7 @@ def test_a_reference_point_in_doubt(tmp_path: Path) -> None:
     assert brief(verdicts(rule, given)) == [("unknown", "doubted"), ("pass", "kept")]
 
 
+@pytest.mark.ci
 def test_what_only_words_a_reason_is_not_used(tmp_path: Path) -> None:
     worded = GAP.replace(
         "FROM pair", ", why('object_lacks', {'object_id': speed_mps, 'lack': 'no_size'}) AS reason FROM pair"

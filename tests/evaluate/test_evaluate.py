@@ -26,9 +26,7 @@ READS = {"reads": '["ego_state"]'}
 
 @pytest.fixture
 def con() -> Iterator[duckdb.DuckDBPyConnection]:
-    with store.open_without_creating_tables() as con:
-        store.create_tables(con)
-        store.create_macros(con)
+    with store.connect() as con:
         for drive, ego in (("a", "1"), ("a", "2"), ("b", "1")):
             who = {"drive_id": drive, "ego_id": ego}
             insert_rows(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])
@@ -160,6 +158,7 @@ def test_findings_of_two_egos_have_two_ids(con: duckdb.DuckDBPyConnection, tmp_p
     assert con.execute("SELECT count(*), count(DISTINCT finding_id) FROM finding").fetchall() == [(3, 3)]
 
 
+@pytest.mark.ci
 def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyConnection, tmp_path: Path) -> None:
     """The guard of the catalogue can fail: a residual that is no comparison in an outer join."""
     sql = SPEED.replace("FROM ego_state", "FROM ego_state e LEFT JOIN pair p USING (drive_id, ego_id)").replace(

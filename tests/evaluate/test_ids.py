@@ -43,6 +43,7 @@ def test_an_actor_that_the_rule_left_out_is_unknown(tmp_path: Path, kind: str) -
     assert found["42"]["verdict"] == ("pass" if kind in {"VARCHAR", "INTEGER"} else "unknown")  # 42.0 is nobody's id
 
 
+@pytest.mark.ci
 def test_margins_of_an_actor_that_no_log_has(tmp_path: Path) -> None:
     who = "SELECT drive_id, ego_id, t_ns, 'nobody' AS object_id"
     sections = {

@@ -89,6 +89,7 @@ def test_negative_infinity_keeps_nothing(tmp_path: Path, sense: str, column: str
     assert row["verdict"] == verdict
 
 
+@pytest.mark.ci
 def test_infinity_is_stored_as_null(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL})
     (row,) = verdicts(rule, speeds([math.inf]))
@@ -140,6 +141,7 @@ def test_a_lower_bound_proves_what_it_can(
     assert (row["margin"] is None) == (row["verdict"] == "unknown")
 
 
+@pytest.mark.ci
 def test_the_bound_that_is_told_is_that_of_the_undecided_step(tmp_path: Path) -> None:
     """The least margin of those that are decided is another step's."""
     sql = SPEED_SQL.replace(" FROM", ", with_direction AS at_least FROM")
@@ -167,6 +169,7 @@ def test_two_rows_for_a_step_are_refused(tmp_path: Path) -> None:
     assert "2 rows for one step" in row["reason"]
 
 
+@pytest.mark.ci
 def test_a_doubled_row_cannot_stand_in_for_a_lost_one(tmp_path: Path) -> None:
     double = "SELECT drive_id, ego_id, t_ns, 50, 10 FROM ego_state WHERE t_ns = 100000000"
     sql = f"{SPEED_SQL} WHERE t_ns <> 200000000 UNION ALL {double}"
@@ -230,6 +233,7 @@ def test_a_hole_splits_and_is_a_row_of_its_own(tmp_path: Path) -> None:
     assert (hole["t_start_ns"], hole["t_end_ns"], hole["n_expected"], hole["n_judged"]) == (10**9, 3 * 10**9, 19, 0)
 
 
+@pytest.mark.ci
 def test_no_hole_row_where_the_rule_does_not_reach_the_hole(tmp_path: Path) -> None:
     sql = SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
@@ -292,6 +296,7 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.ci
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:
     sections = {
         "applies": "SELECT drive_id, ego_id, t_ns, lanelet_id AS episode FROM ego_state",
@@ -305,6 +310,7 @@ def test_own_grid_labels_episodes(tmp_path: Path) -> None:
     assert (finding["t_start_ns"], finding["t_end_ns"]) == (200_000_000, 300_000_000)
 
 
+@pytest.mark.ci
 def test_a_failed_episode_names_its_own_findings(tmp_path: Path) -> None:
     """Not those of another label at the same time, and a finding over two labels is of both."""
     sections = {
@@ -390,6 +396,7 @@ def test_sql_that_raises_is_an_error_of_that_rule(tmp_path: Path) -> None:
     assert "fast" in row["reason"]
 
 
+@pytest.mark.ci
 def test_the_authors_reason_is_kept_where_it_decides(tmp_path: Path) -> None:
     sql = SPEED_SQL.replace(
         " FROM", ", lanelet_id AS reason, CASE WHEN lanelet_id <> 'b' THEN upper(lanelet_id) END AS reason_code FROM"
@@ -401,6 +408,7 @@ def test_the_authors_reason_is_kept_where_it_decides(tmp_path: Path) -> None:
     assert (row["verdict"], row["reason_code"], row["reason"]) == ("pass", "kept", "b")
 
 
+@pytest.mark.ci
 def test_unlimited_on_both_sides_has_no_margin(tmp_path: Path) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, speed_mps AS required FROM ego_state"
     header = INVARIANT | {"sense": '">="', "unit": '"m"', "near_margin": "1.0"} | SPEED
@@ -408,6 +416,7 @@ def test_unlimited_on_both_sides_has_no_margin(tmp_path: Path) -> None:
     assert (row["verdict"], row["margin"], row["near_miss"]) == ("pass", None, False)
 
 
+@pytest.mark.ci
 def test_times_off_the_grid_are_refused_also_where_the_start_is_exempt(tmp_path: Path) -> None:
     sections = {"applies": "SELECT drive_id, ego_id, t_ns + 1 AS t_ns FROM ego_state", "condition": SPEED_SQL}
     rule = write(tmp_path, INVARIANT | MEASURED | SPEED | {"exempt_after_s": "0.2"}, sections)

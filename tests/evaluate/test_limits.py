@@ -180,6 +180,7 @@ def test_a_rule_that_takes_too_long_is_not_judged_and_no_mistake_of_the_user(tmp
     assert status.why == "1 verdict in error: exceeded its limits: bomb.rows"
 
 
+@pytest.mark.ci
 def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither what others do with the machine, nor a thread that reads logs meanwhile."""
     ends = Event()

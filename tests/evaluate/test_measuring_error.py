@@ -69,6 +69,7 @@ def test_what_sensors_saw_is_known_to_five_per_cent(
     assert brief(verdicts(rule, scene([10.4] * 3, sensors=50.0))) == [PASS]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("unit", "value", "expected"), [("m", 0.95, UNKNOWN), ("m", 0.89, FAIL), ("s", 0.94, FAIL)])
 def test_no_distance_is_known_better_than_to_a_decimetre(
     tmp_path: Path, unit: str, value: float, expected: tuple[str, str]

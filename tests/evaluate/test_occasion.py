@@ -81,6 +81,7 @@ def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[s
     assert brief(verdicts(rule, scene("off", 2.0, in_junction=applies))) == [expected]
 
 
+@pytest.mark.ci
 def test_the_references_object_goes_into_the_row(tmp_path: Path) -> None:
     sections = {
         "reference": "SELECT drive_id, ego_id, t_ns, lanelet_id AS object_id FROM exit_taken",
@@ -136,6 +137,7 @@ def test_nobody_there_is_not_known_beyond_sensor_range(tmp_path: Path) -> None:
     assert brief(verdicts(rule, given)) == [("unknown", "beyond_sensor_range")]
 
 
+@pytest.mark.ci
 def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
     given = {
         "step": {"t_s": [0, 1, 2]},
@@ -149,6 +151,7 @@ def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
         assert (row["object_id"], row["verdict"]) == (who, "pass")
 
 
+@pytest.mark.ci
 def test_a_failed_verdict_names_its_findings(tmp_path: Path) -> None:
     """Of each object, or of all together; also of those that are about another object than the worst."""
     given = {
@@ -165,6 +168,7 @@ def test_a_failed_verdict_names_its_findings(tmp_path: Path) -> None:
         assert [[about[name] for name in row["finding_ids"]] for row in rows] == failed
 
 
+@pytest.mark.ci
 def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp_path: Path) -> None:
     sql = PAIR_SQL + " UNION ALL SELECT drive_id, ego_id, t_ns, 'a', 9, 1 FROM pair WHERE object_id = 'a'"
     given = {
@@ -256,6 +260,7 @@ def test_a_hole_in_the_window(tmp_path: Path, at: float, signal: Any, expected: 
     assert brief(verdicts(rule, scene(signal, at, HOLED))) == [expected]
 
 
+@pytest.mark.ci
 def test_a_window_wholly_outside_the_log(tmp_path: Path) -> None:
     rule = write(tmp_path, AFTER | HOLDS | READS, {"reference": REFERENCE, "condition": SIGNAL})
     (row,) = verdicts(rule, scene("left", 9.0))
@@ -263,6 +268,7 @@ def test_a_window_wholly_outside_the_log(tmp_path: Path) -> None:
     assert "s, and the log has the ego from 0.000 s to " in row["reason"]
 
 
+@pytest.mark.ci
 def test_the_window_may_be_a_parameter(tmp_path: Path) -> None:
     params = '[params.ahead_s]\ndefault = 1\nunit = "s"\nwhy = "a test"'
     rule = write(
@@ -276,6 +282,7 @@ def test_the_window_may_be_a_parameter(tmp_path: Path) -> None:
     assert brief(verdicts(rule, given, params={"ahead_s": 1.5})) == [("fail", "violated")]
 
 
+@pytest.mark.ci
 def test_many_windows_at_any_offset(tmp_path: Path) -> None:
     """Time buckets are an optimisation: every window sees exactly its steps, also where it straddles time zero."""
     rule = write(tmp_path, BEFORE | HOLDS | READS | {"window_s": "0.7"}, {"reference": REFERENCE, "condition": SIGNAL})
@@ -337,6 +344,7 @@ def test_several_anchors_go_by_the_quantifier(
     assert got == [always, eventually]
 
 
+@pytest.mark.ci
 def test_references_of_two_drives_do_not_mix(tmp_path: Path) -> None:
     rule = write(
         tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL}
@@ -370,6 +378,7 @@ def test_profiles_at_a_reference_point(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.ci
 def test_a_window_over_objects(tmp_path: Path) -> None:
     header = BEFORE | MEASURED | PAIR
     rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
@@ -389,6 +398,7 @@ def test_a_window_over_objects(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.ci
 def test_nobody_there_is_no_near_miss_and_loses_to_a_real_step(tmp_path: Path) -> None:
     header = BEFORE | MEASURED | PAIR | {"combine": '"all"', "near_margin": "0.5"}
     rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})

@@ -77,6 +77,7 @@ def test_what_is_known_exactly_needs_one(tmp_path: Path) -> None:
     assert brief(verdicts(contact, scene([12], measured()))) == [FAIL]
 
 
+@pytest.mark.ci
 def test_a_bound_that_is_missed_by_less_than_the_error_beside_it_is_no_second_miss(tmp_path: Path) -> None:
     rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
     given = scene([12], measured())
@@ -104,6 +105,7 @@ def test_the_object_counts_as_the_ego_does(tmp_path: Path, missed: list[int], ex
     assert brief(verdicts(rule, given)) == [expected]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("missed", "unseen", "expected"),
     [

@@ -119,6 +119,7 @@ def test_closing_speeds_are_those_of_the_log(drive: tuple[drivelint.CheckResult,
             assert row["closing_mps"] == pytest.approx(closing(log, row), abs=1e-3), row["rule_id"]
 
 
+@pytest.mark.ci
 def test_a_contact_has_the_speed_before_it(tmp_path: Path) -> None:
     path, log = shifted("collision", tmp_path)
     found = drivelint.check(

@@ -62,6 +62,7 @@ def test_a_rule_that_is_asked_for_by_its_id_is_unknown() -> None:
     assert found[SIGNAL] == NOT_THERE
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("names", [True, False])
 def test_a_mapping_that_names_the_signal_asks_for_it(names: bool) -> None:
     found = said(scene(names=names), "ukhc")
@@ -76,6 +77,7 @@ def test_a_signal_that_the_log_has_is_judged_and_one_of_the_map_stays_unknown() 
     assert said(scene(with_map=False), "ukhc")[DIRECTION] == ("unknown", "missing_map")
 
 
+@pytest.mark.ci
 def test_the_law_of_another_nation_is_told_first() -> None:
     assert said(saying(scene(), nation="de"), "ukhc")[HAZARDS] == ("not_applicable", "other_nation")
 
@@ -89,6 +91,7 @@ def test_outside_its_conditions_a_rule_does_not_apply_whatever_the_log_lacks() -
     )
 
 
+@pytest.mark.ci
 def test_the_reason_says_what_the_log_lacks() -> None:
     reasons = {row["rule_id"]: row["reason"] for row in judged([scene()], rules=("ukhc",))}
     assert sentence(reasons[f"ukhc.{HAZARDS}"]) == "the log has no indicators of the ego"

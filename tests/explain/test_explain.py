@@ -171,6 +171,7 @@ def _findings(folder: Path) -> list[dict[str, Any]]:
     return list(pq.read_table(folder / "findings.parquet").to_pylist())
 
 
+@pytest.mark.ci
 def test_the_margin_over_time_has_every_step(folder: Path) -> None:
     found = of(folder, "r126.ds-av-out-of-ov@near_miss")
     assert len(found.series) == found.verdict["n_expected"]

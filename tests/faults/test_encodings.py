@@ -95,6 +95,7 @@ def checked(logs: list[Path], name: str, **options: Any) -> tuple[int, dict[str,
     return result.exit_code, drives_by_name, verdicts
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize("name", LOGS)
 def test_a_topic_of_road_users_refuses_the_log(name: str, tmp_path: Path, good: Path) -> None:
     """Each topic may hold whom the other does not."""
@@ -107,6 +108,7 @@ def test_a_topic_of_road_users_refuses_the_log(name: str, tmp_path: Path, good: 
     assert found["good.mcap"]["status"] == "judged"
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize("name", LOGS)
 def test_a_topic_may_be_chosen(name: str, tmp_path: Path) -> None:
     log = in_another_encoding(LOGS[name](tmp_path / "whole.mcap", second=True))
@@ -116,6 +118,7 @@ def test_a_topic_may_be_chosen(name: str, tmp_path: Path) -> None:
     assert verdicts["ukhc.no-collision"] == alone
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize("name", LOGS)
 def test_another_topic_is_passed_over(name: str, tmp_path: Path, good: Path) -> None:
     """What it would say is unknown, the rest is judged, and the exit code tells that something is lost."""

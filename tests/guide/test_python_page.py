@@ -40,6 +40,7 @@ def run(code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str,
     return runpy.run_path("room.py")
 
 
+@pytest.mark.ci
 def test_the_gap_around_a_moment_is_that_of_the_finding_at_it(ran: dict[str, Any]) -> None:
     found, steps = list(ran["checked"].findings), ran["steps"]
     assert [(row["profile"], row["t_worst_s"]) for row in found] == [("nominal", 7.7), ("observed", 7.7)]

@@ -147,6 +147,7 @@ def test_without_a_map_it_is_the_map_that_is_missing() -> None:
     assert next(item for item in ego.missing_signals if item.signal == "map").provide.endswith("--map FILE")
 
 
+@pytest.mark.ci
 def test_an_ego_that_is_no_vehicle_is_advised_to_choose_another(tmp_path: Path) -> None:
     """Somebody on foot crosses the road: no other map makes them drive on it."""
     frames = []
@@ -199,10 +200,11 @@ def test_an_ego_without_states_is_told_as_check_tells_it(tmp_path: Path) -> None
     path = osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames))
     with pytest.raises(TraceError) as refused:
         read_trace(path, IngestOptions())
-    drive = looked(path)
-    assert str(refused.value) == f"{path}: {drive.ego_source}"
+    found = inspect(InspectRequest(str(path)))
+    assert found.drive is not None
+    assert str(refused.value) == f"{path}: {found.drive.ego_source}"
     console = Console(file=io.StringIO(), width=200)
-    console.print(render(inspect(InspectRequest(str(path))), "log.mcap"))
+    console.print(render(found, "log.mcap"))
     assert isinstance(console.file, io.StringIO)
     assert (
         "none: the log's ego '3' has no states: use --ego ID or --ego all (ids: 7). The longest"
@@ -210,6 +212,7 @@ def test_an_ego_without_states_is_told_as_check_tells_it(tmp_path: Path) -> None
     )
 
 
+@pytest.mark.ci
 def test_every_vehicle_in_turn_and_who_lacks_what(tmp_path: Path) -> None:
     frames = osi_log.drive(20)
     for truth in frames:
@@ -394,6 +397,7 @@ def test_the_json_is_as_its_schema_says(study: Inspection) -> None:
     assert list(json.loads(text)) == ["inspect_schema", "file", "content", "problem", "drive"]
 
 
+@pytest.mark.ci
 def test_the_same_every_time(study: Inspection) -> None:
     road = shared("overtake_case_study/t_junction.xodr")
     again = inspect(InspectRequest(str(shared("overtake_case_study/safe.csv")), map=road, mapping="carla-testbench"))

@@ -46,6 +46,7 @@ def text(order: InspectRequest, width: int = 100) -> str:
     return console.file.getvalue()
 
 
+@pytest.mark.ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("width", [40, 80, 200])
 def test_nothing_is_cut_off(width: int) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from drivelint.explain import ExplainRequest, Explanation, explain
+from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, explain
 from drivelint.explain.text import render
 from drivelint.pack import VerifyRequest, verify
 from tests.explain.checked import OVERTAKE, check
@@ -39,7 +39,7 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
     assert verified.problems == []
     assert "judged again: the same bytes" in verified.sentence
 
-    told = explain(ExplainRequest(HORN, tmp_path / "result"))
+    told = explain(ExplainRequest(HORN, tmp_path / "result", errors=MeasurementErrors(samples=0)))
     assert told.verdict["judged_anew"] == verdict
     assert not [note for note in told.notes if "Judged again" in note]
     screen = printed(told)

@@ -162,6 +162,7 @@ def test_it_is_dark_where_the_reader_wants_it_dark(overtakes: Result, tmp_path: 
     assert opened.value(background) > 192
 
 
+@pytest.mark.ci
 def test_it_prints_whole_though_folded(opened: Page) -> None:
     opened.value("document.querySelectorAll('details').forEach(d => { d.open = false; })")
     pdf = base64.b64decode(opened.call("Page.printToPDF", printBackground=True)["data"])

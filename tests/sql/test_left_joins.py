@@ -18,16 +18,6 @@ from tests.sql import selects
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-QUERIES = (
-    {name: each.sql for name, each in derivations().items()}
-    | {
-        f"{rule_id}@{section}": sql
-        for rule_id, rule in catalogue.load_rules(()).items()
-        for section, sql in rule.sections.items()
-    }
-    | selects.fixed()
-)
-
 
 def nodes(tree: Any) -> Iterator[dict[str, Any]]:
     if isinstance(tree, dict):
@@ -64,9 +54,18 @@ def doubtful(sql: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", QUERIES)
-def test_outer_joins_compare_both_sides(name: str) -> None:
-    assert doubtful(QUERIES[name]) == []
+def test_outer_joins_compare_both_sides() -> None:
+    queries = {
+        **{name: each.sql for name, each in derivations().items()},
+        **{
+            f"{rule_id}@{section}": sql
+            for rule_id, rule in catalogue.load_rules(()).items()
+            for section, sql in rule.sections.items()
+        },
+        **selects.fixed(),
+    }
+    assert {name: found for name, sql in queries.items() if (found := doubtful(sql))} == {}
+    assert len(queries) > 300
 
 
 @pytest.mark.slow

@@ -69,7 +69,6 @@ MEET = "boxes_meet(dx, dy, ca, sa, cb, sb, al / 2, aw / 2, bl / 2, bw / 2)"
 
 
 @given(pairs)
-@settings(max_examples=60, deadline=None)
 def test_the_clearance_is_the_distance_of_the_boxes(found: list[tuple[Box, Box]]) -> None:
     for clearance, distance, meet in about(found, CLEARANCE, "apart_m(a, b)", "ST_Intersects(a, b)"):
         assert isinstance(clearance, float)
@@ -79,7 +78,6 @@ def test_the_clearance_is_the_distance_of_the_boxes(found: list[tuple[Box, Box]]
 
 
 @given(pairs)
-@settings(max_examples=60, deadline=None)
 def test_a_box_is_what_shapely_makes_of_it(found: list[tuple[Box, Box]]) -> None:
     for (x, y, yaw, length, width), (wkb,) in zip([a for a, _ in found], about(found, "ST_AsWKB(a)"), strict=True):
         flat = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
@@ -89,7 +87,6 @@ def test_a_box_is_what_shapely_makes_of_it(found: list[tuple[Box, Box]]) -> None
 
 
 @given(pairs)
-@settings(max_examples=60, deadline=None)
 def test_a_pair_that_arithmetic_leaves_out_is_apart(found: list[tuple[Box, Box]]) -> None:
     """`pair` asks for the clearance only of boxes whose circles are near; `boxes_meet` looks at circles first."""
     for least, distance, meet, touching in about(found, APART, "apart_m(a, b)", MEET, "ST_Intersects(a, b)"):
@@ -98,7 +95,6 @@ def test_a_pair_that_arithmetic_leaves_out_is_apart(found: list[tuple[Box, Box]]
 
 
 @given(boxes, st.floats(0.1, 200.0), boxes)
-@settings(max_examples=100, deadline=None)
 def test_the_danger_space_lies_ahead_of_the_box(box: Box, stopping: float, other: Box) -> None:
     """It shares the front with the box, and nothing else; a box further on is in it if it is less far than the stopping distance."""
     x, y, yaw, length, width = box
@@ -118,7 +114,6 @@ def test_the_danger_space_lies_ahead_of_the_box(box: Box, stopping: float, other
 
 
 @given(boxes, st.floats(-10.0, 10.0), st.floats(-10.0, 10.0), st.floats(0.0, 1.0))
-@settings(max_examples=100, deadline=None)
 def test_a_swept_path_covers_the_box_on_its_way(box: Box, dx: float, dy: float, share: float) -> None:
     x, y, *rest = box
     after, between = (x + dx, y + dy, *rest), (x + share * dx, y + share * dy, *rest)

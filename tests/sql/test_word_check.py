@@ -276,9 +276,10 @@ def test_a_derivation_that_gives_another_word_is_found() -> None:
     assert (only.message, only.offset) == ("'rigth' is no side; did you mean 'right'?", 40)
 
 
-@pytest.mark.parametrize("name", sorted(macro_trees.macro_texts()))
-def test_a_macro_has_only_words_of_the_columns_that_its_parameters_are_named_after(name: str) -> None:
-    assert [each.message for each in word_check.check_macro(name)] == []
+def test_a_macro_has_only_words_of_the_columns_that_its_parameters_are_named_after() -> None:
+    found = {name: [each.message for each in word_check.check_macro(name)] for name in macro_trees.macro_texts()}
+    assert {name: messages for name, messages in found.items() if messages} == {}
+    assert len(found) > 200
 
 
 def test_every_macro_is_read_but_that_of_two_signatures() -> None:

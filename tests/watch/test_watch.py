@@ -280,6 +280,7 @@ class Broken:
     def close(self) -> None: ...
 
 
+@pytest.mark.ci
 def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the_check(tmp_path: Path) -> None:
     told: list[dict[str, Any]] = []
     on = ("ukhc.no-collision=true",)

@@ -55,6 +55,7 @@ def test_a_car_that_is_not_placed_where_the_vehicle_hits_it_is_no_pass(tmp_path:
     assert result.drives["lossy"].to_pylist() == [True]
 
 
+@pytest.mark.ci
 def test_sizes_that_a_scenario_does_not_have_leave_gaps_unknown(tmp_path: Path) -> None:
     rows = [*track("AV", range(110)), *track("7", range(110), speed=0.0, y=0.0, position_x=60.0)]
     (tmp_path / "s").mkdir()

@@ -72,6 +72,7 @@ def test_headlights_at_night_are_judged(tmp_path: Path, head: int | None, verdic
     assert (found["verdict"], found["rule_id"]) == (verdict, "ukhc.r113.headlights")
 
 
+@pytest.mark.ci
 def test_headlights_that_become_unknown_are_no_pass(tmp_path: Path) -> None:
     frames = [osi_log.drive(30, head=UNKNOWN if k == 20 else ON)[k] for k in range(30)]
     (found,) = judged([Drive(read(write(tmp_path, frames), conditions=NIGHT), None)], rules=["ukhc.r113.headlights"])
@@ -84,6 +85,7 @@ def test_a_log_with_lamps_declares_nothing_of_what_the_ego_means(tmp_path: Path)
     assert (there["mode_headlights"], there["declared_events"]) == (True, False)
 
 
+@pytest.mark.ci
 def test_the_headlights_of_a_real_log() -> None:
     trace = read(shared("osi/MovingHostWithStopLineVariations.mcap"), conditions=NIGHT)
     assert events(trace) == [("0", 0.0, "headlights", "off")]

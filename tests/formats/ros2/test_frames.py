@@ -264,6 +264,7 @@ def test_a_bag_of_compressed_files_is_read_when_they_are_unpacked(tmp_path: Path
     assert [file.name for file in bag_files(folder)] == ["my bag.mcap"]
 
 
+@pytest.mark.ci
 def test_a_bag_of_compressed_messages_and_a_bag_of_ros_1_name_the_command_that_converts_them(tmp_path: Path) -> None:
     folder = written(tmp_path / "bag", rosbag2.CompressionMode.MESSAGE)
     old = tmp_path / "old.bag"

@@ -204,6 +204,7 @@ def test_a_bag_without_definitions_is_read_with_the_files_of_its_messages(tmp_pa
         assert rows == others
 
 
+@pytest.mark.ci
 def test_inspect_says_which_topics_the_mapping_reads(tmp_path: Path) -> None:
     path = str(bag(tmp_path / "bag"))
     found = inspect(InspectRequest(trace=path, mapping=guide_mapping(tmp_path)))

@@ -237,6 +237,7 @@ def round_drive() -> list[ros.Message]:
     return found
 
 
+@pytest.mark.ci
 def test_values_are_those_that_rosbags_reads(tmp_path: Path) -> None:
     """To a millimetre and a millionth of a radian, over twenty seconds."""
     typesys = pytest.importorskip("rosbags.typesys", reason="rosbags is not installed: pip install rosbags")

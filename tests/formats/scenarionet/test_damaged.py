@@ -74,7 +74,7 @@ CONTENT = whole()
 PLACES = [path for path in places(CONTENT) if len(path) < 6]
 
 
-@pytest.mark.sample(20, ci=10)
+@pytest.mark.sample(6, ci=24)
 @pytest.mark.parametrize("dataset", ["waymo", "nuscenes"])
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: "/".join(map(str, path)))
 @pytest.mark.filterwarnings("error")

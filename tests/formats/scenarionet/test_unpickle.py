@@ -173,6 +173,7 @@ def test_hostile_pickles_take_neither_time_nor_memory(name: str) -> None:
     assert len(lines) == (0 if harmless else 1)
 
 
+@pytest.mark.ci
 def test_damage_is_one_line() -> None:
     content = pickle.dumps(scenario({"ego": track(straight(20, 5.0))}, features={"1": lane([[0, 0], [50, 0]])}), 4)
     chance = random.Random(7)  # noqa: S311 - damage, no secret

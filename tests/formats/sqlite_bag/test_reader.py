@@ -114,6 +114,7 @@ def test_verdicts_pictures_and_the_annotated_log_are_those_of_the_bag_in_mcap(tm
     assert any(row["verdict"] == "fail" for row in found["SQLITE3"]["verdicts"])
 
 
+@pytest.mark.ci
 def test_every_message_of_a_split_bag_is_copied_in_its_order(tmp_path: Path) -> None:
     parts = [messages()[:30], messages()[30:]]
     path = sqlite_log.bag(tmp_path / "bag", parts, definitions=False)
