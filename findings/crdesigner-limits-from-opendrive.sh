@@ -17,8 +17,8 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 python3.11 -m venv --without-pip venv 2>/dev/null || python3 -m venv --without-pip venv
 # Only what this way needs; windows (PyQt6) and downloads (requests) are replaced by empty modules below.
-python3 -m pip --python venv install -q --no-compile --no-deps commonroad-scenario-designer==0.8.5 commonroad-io==2024.3 commonroad-clcs==2025.2.0 numpy==1.26.4 scipy==1.17.1 \
-  shapely==2.0.7 lxml==6.1.3 pyproj==3.7.2 certifi omegaconf==2.4.0 antlr4-python3-runtime==4.9.3 pyyaml==6.0.4 iso3166==3.0.0 mgrs==1.6.0 pyclothoids==0.2.0
+python3 -m pip --python venv install -q --no-compile --no-deps commonroad-scenario-designer==0.8.5 commonroad-io==2024.3 commonroad-clcs==2025.2.0 numpy==1.26.4 \
+  scipy==1.17.1 shapely==2.0.7 lxml==6.1.3 pyproj==3.7.2 certifi omegaconf==2.4.0 antlr4-python3-runtime==4.9.3 pyyaml==6.0.4 iso3166==3.0.0 mgrs==1.6.0 pyclothoids==0.2.0
 
 cat >seen.py <<'PY'
 import math

@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
-# pyproj 3.7.2 (PROJ 9.5.1) and geopandas 1.2.0 as installed from PyPI: a position of 30 November 2026 from a receiver with worldwide corrections (Galileo's, or any of precise
-# point positioning), which is in ITRF2020, on a map in UTM 32 (EPSG:25832, ETRS89). Europe moves by 2.5 cm a year in ITRF, and stands still in ETRS89.
+# pyproj 3.7.2 (PROJ 9.5.1) and geopandas 1.2.0 as installed from PyPI: a position of 30 November 2026 from a receiver with worldwide corrections (Galileo's, or any of
+# precise point positioning), which is in ITRF2020, on a map in UTM 32 (EPSG:25832, ETRS89). Europe moves by 2.5 cm a year in ITRF, and stands still in ETRS89.
 #
 # Expected: `to_crs` from ITRF2020 (EPSG:9990) is right to the centimetre, or says that it needs the year; `only_best=True, allow_ballpark=False` refuses to guess.
-# Seen: it takes the year 2015 without a word: 0.29 m to the north-east, 2.5 cm more each year. geopandas has no way to give the year; pyproj has one (`transform(..., tt=2026.9)`),
-# and with the log's own clock there, which begins at 0, the place is 50 m off. As WGS 84, by its newest realization (EPSG:10606), which is ITRF2020 to a centimetre, it is
-# 0.93 m off. Accuracy is said to be unknown, 3 m, or 1 m.
-# Why it matters: the receiver is good to 0.2 m. A car of 2 m in the middle of a lane of 3 m has 0.5 m to each line: with 0.29 m more than half of that is gone, with 0.93 m
-# it is over the line. The shift is the same in each row, so no check of the log shows it. From ITRF2014 (EPSG:9000) it is the same.
+# Seen: it takes the year 2015 without a word: 0.29 m to the north-east, 2.5 cm more each year. geopandas has no way to give the year; pyproj has one
+# (`transform(..., tt=2026.9)`), and with the log's own clock there, which begins at 0, the place is 50 m off. As WGS 84, by its newest realization (EPSG:10606), which is
+# ITRF2020 to a centimetre, it is 0.93 m off. Accuracy is said to be unknown, 3 m, or 1 m.
+# Why it matters: the receiver is good to 0.2 m. A car of 2 m in the middle of a lane of 3 m has 0.5 m to each line: with 0.29 m more than half of that is gone, with
+# 0.93 m it is over the line. The shift is the same in each row, so no check of the log shows it. From ITRF2014 (EPSG:9000) it is the same.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 python3.11 -m venv --without-pip venv 2>/dev/null || python3 -m venv --without-pip venv
-python3 -m pip --python venv install -q --no-compile --no-deps pyproj==3.7.2 certifi geopandas==1.2.0 shapely==2.2.0 pandas==3.1.1 numpy==2.4.6 packaging==26.4 python-dateutil==4.0.0
+python3 -m pip --python venv install -q --no-compile --no-deps pyproj==3.7.2 certifi geopandas==1.2.0 shapely==2.2.0 pandas==3.1.1 numpy==2.4.6 \
+  packaging==26.4 python-dateutil==4.0.0
 
 cat >seen.py <<'PY'
 import math

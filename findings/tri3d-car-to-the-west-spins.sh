@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# tri3d 0.2.2 (one interface for nuScenes, Argoverse 2, Waymo, ZOD and others): `boxes(sequence, frame, sensor)` between two key frames of a nuScenes log. Its guide says
-# that it interpolates the boxes to the time of the sensor.
+# tri3d 0.2.2 (one interface for nuScenes, Argoverse 2, Waymo, ZOD and others): `boxes(sequence, frame, sensor)` between two key frames of a nuScenes log. Its guide
+# says that it interpolates the boxes to the time of the sensor.
 #
-# Expected: an oncoming car whose course goes from 179 to 181 degrees has 180 degrees half way, as `Quaternion.slerp` of pyquaternion has it, by which nuscenes-devkit does this.
+# Expected: an oncoming car whose course goes from 179 to 181 degrees has 180 degrees half way, as `Quaternion.slerp` of pyquaternion has it, by which nuscenes-devkit
+# does this.
 # Seen: half way it has 0 degrees, and a quarter of the way it stands across the road: it turns by 358 degrees the other way round. The centre is right, and so is each
 # key frame. A quaternion and its negative are one rotation, and tri3d takes the way between the two as they are: the sign changes at 180 degrees, and it may change
-# anywhere, as in a parked car at 30 degrees. In the axes of a camera, `heading` is by its convention at the very microsecond of a key frame, and else 0, 90 or 180 degrees.
+# anywhere, as in a parked car at 30 degrees. In the axes of a camera, `heading` is by its convention at the very microsecond of a key frame, and else 0, 90 or 180.
 # Why it matters: nuScenes has key frames at 2 Hz and lidar at 20 Hz, so nine of ten frames are interpolated. Whoever drives west sweeps a lane on each side, has a
 # yaw rate of 12.5 rad/s and collides with those beside; to the east, north and south all is right.
 set -euo pipefail
