@@ -168,6 +168,16 @@ def test_an_empty_sequence_pads_nothing() -> None:
     assert [table.columns[name].tolist() for name in ("lane", "vehicles", "speed")] == [[2], [7], [20.0]]
 
 
+@pytest.mark.parametrize("read", [{"speed": None}, {"objects": {"gap": None}, "speed": None}])
+def test_a_number_behind_an_empty_list_of_messages_is_aligned(read: dict[str, Any]) -> None:
+    """mcap-ros2-support-fast 0.8.0 reads it four bytes early if the listed message ends with eight bytes: a speed of 0."""
+    types = {"p/Top": "p/Object[] objects\nfloat64 speed", "p/Object": "uint32 id\nfloat64 gap"}
+    alone = bytes([0, 1, 0, 0]) + struct.pack("<I4xd", 0, 20.0)
+    beside_another = bytes([0, 1, 0, 0]) + struct.pack("<IIdd", 1, 7, 42.0, 20.0)
+    table = decoder(types, "p/Top", read).table(log_messages([alone, beside_another]))
+    assert table.columns["speed"].tolist() == [20.0, 20.0]
+
+
 def test_cut_off_at_any_byte() -> None:
     begins = "log.mcap: topic '/t', log time 1 ns, record at byte 1001: the derived"
     told = {length: refusal([WHOLE, WHOLE[:length], WHOLE]) for length in range(len(WHOLE))}
