@@ -32,6 +32,8 @@ from drivelint.errors import (
     describe_machine_error,
     memory_limit_of_process_bytes,
 )
+from drivelint.options.arguments import DriveArguments  # noqa: TC001 - read at runtime
+from drivelint.options.declaration import engine_values
 from drivelint.phrases import terminal_safe, terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings, read_settings
 from drivelint.without_pandas import block_pandas_import
@@ -93,13 +95,13 @@ def demo(
 
 
 @app.command()
-@options.add_drive_options
+@options.with_declared_options
 def inspect(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
     rules: Annotated[Texts, option("--rules", "SEL", "Rules to list, as in check. Repeatable. Default: ukhc.")] = None,
-    rules_dir: options.RulesDirs = None,
+    rules_dirs: options.RulesDirs = None,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",
 ) -> None:
@@ -111,9 +113,9 @@ def inspect(
 
     request = inspection.InspectRequest(
         trace=trace,
-        **drive,
+        **engine_values(drive),
         rules=tuple(rules or ()),
-        rules_dirs=tuple(rules_dir or ()),
+        rules_dirs=tuple(rules_dirs or ()),
         memory=option_values.parse_memory(memory),
     )
     found = run_interruptible(lambda: inspection.inspect(request))
@@ -127,7 +129,7 @@ def inspect(
 
 
 @app.command()
-@options.add_drive_options
+@options.with_declared_options
 def convert(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
@@ -144,7 +146,7 @@ def convert(
         ),
     ] = None,
     folder: Annotated[Path | None, option("--in", "DIR", "With --clip: the folder that check --out wrote.")] = None,
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
 ) -> None:
     """Convert a log to OSI in MCAP, or to Parquet.
 
@@ -154,7 +156,7 @@ def convert(
     from drivelint import convert as converter
     from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 
-    request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
+    request = converter.ConvertRequest(trace=trace, to=to, out=out, **engine_values(drive))
     if (clip is None) is not (folder is None):
         raise UsageError(
             "--clip and --in need each other: --clip gives the finding, --in the folder that check --out wrote"

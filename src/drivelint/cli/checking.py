@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path  # noqa: TC003 - Typer reads the types
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from drivelint import option_values
-from drivelint.cli import completion, options, packs, streams
+from drivelint.cli import options, packs, streams
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import (
     rich_text,
@@ -18,14 +17,18 @@ from drivelint.cli.console import (
     say_kept_drives,
     say_nothing_kept,
 )
-from drivelint.cli.options import Texts, argument, option
+from drivelint.cli.options import After, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
+from drivelint.options.arguments import CheckArguments, DriveArguments
+from drivelint.options.declaration import engine_values, options_of_engine
+from drivelint.options.types import to_path
 from drivelint.phrases import terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from drivelint.engine.interruption import Interruption
     from drivelint.report.progress import Progress
@@ -33,45 +36,11 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions
 
 
-@options.add_drive_options
+@options.with_declared_options
 def check(
     *,
-    traces: Annotated[
-        list[str], argument("TRACE", "Recorded drives: files, globs, folders, or a manifest of them, as in audit.")
-    ],
-    drive: options.DriveInputValues,
-    out: Annotated[
-        Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
-    ] = None,
-    overwrite: options.Overwrite = False,
-    rules: Annotated[
-        Texts,
-        options.rules_option(
-            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc, in Germany (--env, --map) of stvo too."
-        ),
-    ] = None,
-    ignore: options.Ignore = None,
-    profile: Annotated[
-        Texts,
-        options.profile_option(
-            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
-        ),
-    ] = None,
-    param: options.Param = None,
-    rules_dir: options.RulesDirs = None,
-    fail_on: options.FailOnOption = "critical",
-    strict: options.Strict = False,
-    require: Annotated[
-        Texts,
-        option(
-            "--require",
-            "SEL",
-            "Exit code 4 if one of these rules is unknown. Repeatable.",
-            autocompletion=completion.rule_ids,
-        ),
-    ] = None,
-    min_judged: options.MinJudged = None,
-    format_: options.FormatOption = "text",
+    arguments: CheckArguments,
+    format_: Annotated[options.Format, options.FORMAT, After("min_judged")] = "text",
     report: Annotated[
         list[options.ReportFormat] | None,
         option(
@@ -79,57 +48,8 @@ def check(
             "html|junit|sarif|xqar|markdown",
             "With --out: also write this report, as drivelint report does. report.html and junit.xml are always written. Repeatable.",
         ),
+        After("format_"),
     ] = None,
-    margins: Annotated[
-        bool, option("--margins", None, "Also write margins.parquet, with a row per judged step.")
-    ] = False,
-    keep_db: Annotated[
-        bool, option("--keep-db", None, "Also keep the database with the tables of every stage.")
-    ] = False,
-    annotate: Annotated[
-        bool,
-        option(
-            "--annotate/--no-annotate",
-            None,
-            "With --out: write a copy of each log that includes its verdicts, for a viewer.",
-        ),
-    ] = True,
-    pictures: Annotated[
-        bool,
-        option("--pictures/--no-pictures", None, "With --out: show frames of the log's own cameras beside findings."),
-    ] = True,
-    robustness: Annotated[
-        bool | None,
-        options.robustness_option(
-            "Count in how many copies of the drive with recording errors a critical or major finding stays. "
-            "Default: only for the gravest finding of each rule, and for findings that small errors may remove."
-        ),
-    ] = None,
-    confidence: Annotated[
-        float | None,
-        option(
-            "--confidence",
-            "SHARE",
-            "Only findings that stay in at least this share of their copies can fail the run, such as 0.95. Default: all findings can.",
-            min=0.0,
-            max=1.0,
-        ),
-    ] = None,
-    baseline: options.Baseline = None,
-    waivers: options.Waivers = None,
-    today: options.Today = None,
-    memory: options.MemorySize = None,
-    rule_timeout: Annotated[
-        float,
-        option(
-            "--rule-timeout",
-            "S",
-            "Seconds that a rule may compute on a batch of drives. A rule that takes longer is an error; the others continue.",
-            min=0.1,
-        ),
-    ] = 30.0,
-    evidence: options.Evidence = None,
-    sign: options.Sign = None,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary.")] = False,
     jobs: Annotated[
         int,
@@ -165,14 +85,16 @@ def check(
     could be decided (with --strict or --require: some rule unknown; with --min-judged: too few rules decided); 75 the machine
     failed, try again; 130 interrupted: results so far are kept.
     """
-    arguments = dict(locals())
+    printing = {name: value for name, value in locals().items() if name != "arguments"}
 
     from drivelint.cli.receipts import StoredRunOfCheck
 
+    engine_values(arguments, DriveArguments)  # an invalid value is an error before anything is printed
+    out, overwrite, baseline = to_path(arguments.out), arguments.overwrite, to_path(arguments.baseline)
     settings_file = _find_and_print_settings_file(quiet=quiet)
-    robustness = option_values.robustness_option_with_confidence(confidence, robustness)
-    day = option_values.parse_today(today)
-    receipts = StoredRunOfCheck(arguments, day, settings_file)
+    robustness = option_values.robustness_option_with_confidence(arguments.confidence, arguments.robustness)
+    day = option_values.parse_today(arguments.today)
+    receipts = StoredRunOfCheck(vars(arguments) | printing, day, settings_file)
     with say_earlier_folder_on_failure(out):
         earlier = receipts.repeat_earlier_run()
     if earlier is not None:
@@ -181,34 +103,16 @@ def check(
 
     from drivelint import run
     from drivelint.engine.interruption import Interruption, NothingJudgedError
-    from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs, refuse_to_overwrite_baseline
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
-    pack = option_values.pack_request(evidence, sign, out, overwrite=overwrite)
+    pack = option_values.pack_request(to_path(arguments.evidence), to_path(arguments.sign), out, overwrite=overwrite)
     refuse_to_overwrite_baseline(baseline, out)
-    settings = run.CheckOptions(
-        traces=tuple(traces),
-        **drive,
-        rules=tuple(rules or ()),
-        ignore=tuple(ignore or ()),
-        profiles=tuple(profile or ()),
-        params=tuple(param or ()),
-        rules_dirs=tuple(rules_dir or ()),
-        fail_on=fail_on,
-        strict=strict,
-        require=tuple(require or ()),
-        min_judged=min_judged,
-        margins=margins,
-        keep_db=keep_db,
-        annotate=annotate,
-        pictures=pictures,
-        robustness=robustness,
-        memory=option_values.parse_memory(memory),
-        rule_timeout=rule_timeout,
+    settings, interruption = (
+        options_of_engine(run.CheckOptions, engine_values(arguments), robustness=robustness),
+        Interruption(),
     )
-    interruption = Interruption()
     with (
         say_earlier_folder_on_failure(out),
         working_folder(out, report or (), overwrite=overwrite) as work,
@@ -230,7 +134,9 @@ def check(
                 settings = _with_manifests_replaced_by_logs(
                     replace(settings, out=work), are_results_packed=pack is not None
                 )
-                gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
+                gate_inputs = GateInputs.from_files(
+                    baseline, to_path(arguments.waivers), settings_file, day, out, confidence=arguments.confidence
+                )
                 judged = run_interruptible(
                     lambda: _judge(
                         settings,
@@ -250,16 +156,22 @@ def check(
         receipts.store_receipt(
             result, stdout, code, files_written_while_judging=grown, gate=gate_inputs, interruption=interruption
         )
-        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
-            progress.note(
-                f"the process took at most {format_bytes(most)} of memory, including memory outside the database"
-            )
+        if arguments.memory is not None and jobs == 1:
+            _note_peak_memory(progress)
     typer.echo(stdout, nl=False)
     if result.interrupted:
         say_kept_drives(result.drives["status"].to_pylist(), out)
     elif pack is not None:
         packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(code)
+
+
+def _note_peak_memory(progress: Progress) -> None:
+    """Note how much memory this process took, not counting processes that it started."""
+    from drivelint.engine.memory import format_bytes, peak_bytes
+
+    if (most := peak_bytes()) is not None:
+        progress.note(f"the process took at most {format_bytes(most)} of memory, including memory outside the database")
 
 
 def _find_and_print_settings_file(*, quiet: bool) -> Path | None:

@@ -12,6 +12,7 @@ from drivelint.cli import checks, completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
+from drivelint.options.types import FailOn  # noqa: TC001 - Typer reads it
 from drivelint.phrases import terminal_safe_json
 
 
@@ -124,7 +125,7 @@ def diff(
     new: Annotated[Path, argument("NEW", "The folder that the same command wrote later.")],
     format_: Annotated[options.DiffFormat, option("--format", None, "Format of the output on stdout.")] = "text",
     fail_on: Annotated[
-        options.FailOn | None,
+        FailOn | None,
         option("--fail-on", None, "Lowest severity of a new finding that causes exit code 1. Default: that of NEW."),
     ] = None,
     rows: Annotated[
