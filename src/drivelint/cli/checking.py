@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -17,12 +17,11 @@ from drivelint.cli.console import (
     say_kept_drives,
     say_nothing_kept,
 )
-from drivelint.cli.options import After, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
-from drivelint.options.arguments import CheckArguments, DriveArguments
+from drivelint.options.arguments import CheckCommandArguments, DriveArguments
 from drivelint.options.declaration import engine_values, options_of_engine
-from drivelint.options.types import to_path
+from drivelint.options.types import Format, to_path
 from drivelint.phrases import terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings
 
@@ -37,42 +36,7 @@ if TYPE_CHECKING:
 
 
 @options.with_declared_options
-def check(
-    *,
-    arguments: CheckArguments,
-    format_: Annotated[options.Format, options.FORMAT, After("min_judged")] = "text",
-    report: Annotated[
-        list[options.ReportFormat] | None,
-        option(
-            "--report",
-            "html|junit|sarif|xqar|markdown",
-            "With --out: also write this report, as drivelint report does. report.html and junit.xml are always written. Repeatable.",
-        ),
-        After("format_"),
-    ] = None,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary.")] = False,
-    jobs: Annotated[
-        int,
-        typer.Option(
-            "--jobs",
-            "-j",
-            metavar="N",
-            min=1,
-            help="Number of processes. Each judges a part of the logs; the result is the same.",
-        ),
-    ] = 1,
-    cache: Annotated[
-        bool,
-        option(
-            "--cache/--no-cache",
-            None,
-            "If logs, map, rules and options are those of an earlier run, write and print the same as it did, without judging. "
-            "--no-cache always judges, and keeps no receipt.",
-            envvar="DRIVELINT_CHECK_CACHE",
-        ),
-    ] = True,
-    quiet: options.Quiet = False,
-) -> None:
+def check(arguments: CheckCommandArguments) -> None:
     """Judge recorded drives against the rules.
 
     With --out: writes tables of verdicts and findings, report.html, and copies of the logs that include their verdicts.
@@ -85,16 +49,14 @@ def check(
     could be decided (with --strict or --require: some rule unknown; with --min-judged: too few rules decided); 75 the machine
     failed, try again; 130 interrupted: results so far are kept.
     """
-    printing = {name: value for name, value in locals().items() if name != "arguments"}
-
     from drivelint.cli.receipts import StoredRunOfCheck
 
     engine_values(arguments, DriveArguments)  # an invalid value is an error before anything is printed
     out, overwrite, baseline = to_path(arguments.out), arguments.overwrite, to_path(arguments.baseline)
-    settings_file = _find_and_print_settings_file(quiet=quiet)
+    settings_file = _find_and_print_settings_file(quiet=arguments.quiet)
     robustness = option_values.robustness_option_with_confidence(arguments.confidence, arguments.robustness)
     day = option_values.parse_today(arguments.today)
-    receipts = StoredRunOfCheck(vars(arguments) | printing, day, settings_file)
+    receipts = StoredRunOfCheck(vars(arguments), day, settings_file)
     with say_earlier_folder_on_failure(out):
         earlier = receipts.repeat_earlier_run()
     if earlier is not None:
@@ -115,8 +77,8 @@ def check(
     )
     with (
         say_earlier_folder_on_failure(out),
-        working_folder(out, report or (), overwrite=overwrite) as work,
-        bar(quiet) as progress,
+        working_folder(out, arguments.report or (), overwrite=overwrite) as work,
+        bar(arguments.quiet) as progress,
     ):
         unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
@@ -126,7 +88,7 @@ def check(
             if gate_inputs is not None:
                 result = gate_inputs.apply_to(result)
             if out is not None:
-                grown = write(result, out, work, reports=report or (), overwrite=overwrite)
+                grown = write(result, out, work, reports=arguments.report or (), overwrite=overwrite)
             return result
 
         try:
@@ -140,7 +102,7 @@ def check(
                 judged = run_interruptible(
                     lambda: _judge(
                         settings,
-                        jobs,
+                        arguments.jobs,
                         progress,
                         interruption=interruption,
                         unstoppable_rule_handler=unstoppable_rule_handler,
@@ -152,11 +114,14 @@ def check(
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
         result = gate_and_write(judged)
-        stdout, code = _stdout_text(result, format_, out, verbose=verbose), int(exit_status(result).code)
+        stdout, code = (
+            _stdout_text(result, arguments.format_, out, verbose=arguments.verbose),
+            int(exit_status(result).code),
+        )
         receipts.store_receipt(
             result, stdout, code, files_written_while_judging=grown, gate=gate_inputs, interruption=interruption
         )
-        if arguments.memory is not None and jobs == 1:
+        if arguments.memory is not None and arguments.jobs == 1:
             _note_peak_memory(progress)
     typer.echo(stdout, nl=False)
     if result.interrupted:
@@ -225,7 +190,7 @@ def _judge(
     return run.check(settings, progress, interruption, unstoppable_rule_handler, keep)
 
 
-def _stdout_text(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
+def _stdout_text(result: Result, format_: Format, out: Path | None, *, verbose: bool) -> str:
     """Return the text of a result for stdout."""
     from drivelint.report import summary, terminal
     from drivelint.result.one_line import result_on_one_line

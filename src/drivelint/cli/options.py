@@ -3,46 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import is_dataclass
-from enum import StrEnum
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from drivelint.cli import completion
-from drivelint.options.arguments import CheckArguments
+from drivelint.options.arguments import CheckCommandArguments
 from drivelint.options.declaration import DeclaredOption, declared_options
+from drivelint.options.types import Format
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-class ReportFormat(StrEnum):
-    """Formats of a report; an enumeration, because Typer has no lists of a `Literal`."""
-
-    HTML = "html"
-    JUNIT = "junit"
-    SARIF = "sarif"
-    XQAR = "xqar"
-    MARKDOWN = "markdown"
-
-
-Format = Literal["text", "json"]
-"""Formats of a result on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
 SqlFormat = Literal["text", "csv", "json"]
 DiffFormat = Literal["text", "json", "markdown"]
 RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 Texts = list[str] | None
 """The value of an option that may be repeated."""
-
-
-class After(NamedTuple):
-    """The place of an option in the help: after the option of this parameter."""
-
-    name: str
 
 
 def argument(metavar: str, help_text: str, **settings: Any) -> Any:
@@ -60,12 +42,19 @@ def declared_info(declared: DeclaredOption) -> Any:
     said = declared.option
     if declared.is_positional:
         return argument(said.metavar or "", said.help)
-    completion_of_rules = {"autocompletion": completion.rule_ids} if said.selects_rules else {}
-    return option(declared.flags, said.metavar, said.help, min=said.minimum, max=said.maximum, **completion_of_rules)
+    return typer.Option(
+        *declared.flags,
+        metavar=said.metavar,
+        help=said.help,
+        min=said.minimum,
+        max=said.maximum,
+        envvar=said.environment_variable,
+        autocompletion=completion.rule_ids if said.selects_rules else None,
+    )
 
 
 def _option_of_check(name: str) -> Any:
-    return next(declared_info(each) for each in declared_options(CheckArguments) if each.name == name)
+    return next(declared_info(each) for each in declared_options(CheckCommandArguments) if each.name == name)
 
 
 MinJudged = Annotated[float | None, _option_of_check("min_judged")]
@@ -76,15 +65,14 @@ Overwrite = Annotated[bool, _option_of_check("overwrite")]
 Evidence = Annotated[Path | None, _option_of_check("evidence")]
 Sign = Annotated[Path | None, _option_of_check("sign")]
 RulesDirs = Annotated[list[Path] | None, _option_of_check("rules_dir")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
-FORMAT: Final[Any] = option("--format", None, "Format of the output on stdout.")
-FormatOption = Annotated[Format, FORMAT]
+Quiet = Annotated[bool, _option_of_check("quiet")]
+FormatOption = Annotated[Format, _option_of_check("format_")]
 
 
 def with_declared_options(command: Callable[..., None]) -> Callable[..., None]:
     """Replace each parameter of a command that is a class of arguments by the options that the class declares.
 
-    Typer gets a parameter per option, with the name of the engine's field. An option with `After` stands after the named one.
+    Typer gets a parameter per option, with the name of the engine's field.
     """
     groups: dict[str, Any] = {}
     parameters: list[Parameter] = []
@@ -101,9 +89,7 @@ def with_declared_options(command: Callable[..., None]) -> Callable[..., None]:
                 for declared in declared_options(each.annotation)
             ]
         else:
-            before = [data.name for data in get_args(each.annotation) if isinstance(data, After)]
-            place = [parameter.name for parameter in parameters].index(before[0]) + 1 if before else len(parameters)
-            parameters.insert(place, each.replace(kind=Parameter.KEYWORD_ONLY))
+            parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
 
     @wraps(command)
     def command_with_options(**values: Any) -> None:

@@ -14,9 +14,11 @@ from drivelint.options.types import (
     AnyPath,
     Assignments,
     FailOn,
+    Format,
     Handedness,
     Pair,
     Paths,
+    ReportFile,
     Texts,
     Visibility,
     to_float,
@@ -67,6 +69,7 @@ Sign = Annotated[
         "KEY",
     ),
 ]
+Quiet = Annotated[bool, Option("No progress on stderr.", flag="--quiet -q")]
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -247,3 +250,40 @@ class CheckArguments(ExitCodeArguments, RuleArguments, OutputArguments, DriveArg
     evidence: Evidence = None
     sign: Sign = None
     progress: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
+class CheckCommandArguments(CheckArguments):
+    """The arguments of `drivelint check` on the command line."""
+
+    format_: Annotated[Format, Option("Format of the output on stdout.", flag="--format", place_after="min_judged")] = (
+        "text"
+    )
+    report: Annotated[
+        list[ReportFile] | None,
+        Option(
+            "With --out: also write this report, as drivelint report does. report.html and junit.xml are always written. Repeatable.",
+            "html|junit|sarif|xqar|markdown",
+            place_after="format_",
+        ),
+    ] = None
+    verbose: Annotated[bool, Option("Print every table, not only the summary.", flag="--verbose -v")] = False
+    jobs: Annotated[
+        int,
+        Option(
+            "Number of processes. Each judges a part of the logs; the result is the same.",
+            "N",
+            flag="--jobs -j",
+            minimum=1,
+        ),
+    ] = 1
+    cache: Annotated[
+        bool,
+        Option(
+            "If logs, map, rules and options are those of an earlier run, write and print the same as it did, without judging. "
+            "--no-cache always judges, and keeps no receipt.",
+            flag="--cache/--no-cache",
+            environment_variable="DRIVELINT_CHECK_CACHE",
+        ),
+    ] = True
+    quiet: Quiet = False

@@ -8,7 +8,7 @@ is `--map-dir DIR` on the command line, the keyword `map_dir` in Python, and the
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
 from inspect import Parameter, Signature
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeVar, get_args, get_origin
@@ -27,7 +27,8 @@ class Option:
 
     `metavar`: the name of the value in the help. `flag`: the spelling on the command line. `minimum`, `maximum`: bounds of a number.
     `field`: the name of the engine's field. `parse`: reads the value, after the conversion by its type. `type`: if not that which
-    `OPTION_TYPES` has for the annotation. `selects_rules`: the shell completes ids of rules.
+    `OPTION_TYPES` has for the annotation. `selects_rules`: the shell completes ids of rules. `environment_variable`: sets the option, too.
+    `place_after`: the option of this name comes before this one in the help; empty: the options of the base classes do.
     """
 
     help: str
@@ -39,6 +40,8 @@ class Option:
     parse: Callable[[Any], Any] | None = None
     type: OptionType | None = None
     selects_rules: bool = False
+    environment_variable: str | None = None
+    place_after: str = ""
 
 
 class DeclaredOption(NamedTuple):
@@ -56,9 +59,9 @@ class DeclaredOption(NamedTuple):
         return self.option.field or self.name
 
     @property
-    def flags(self) -> str:
-        """Return the spelling on the command line."""
-        return self.option.flag or f"--{self.name.replace('_', '-')}"
+    def flags(self) -> list[str]:
+        """Return the spellings on the command line."""
+        return (self.option.flag or f"--{self.name.replace('_', '-')}").split()
 
     def engine_value(self, value: Any) -> Any:
         """Return an argument as a value for the engine. Errors: `UsageError`."""
@@ -68,44 +71,41 @@ class DeclaredOption(NamedTuple):
         return converted if self.option.parse is None else self.option.parse(converted)
 
     @classmethod
-    def from_annotation(
-        cls, name: str, annotation: Any, default: Any, *, is_positional: bool = False
-    ) -> DeclaredOption | None:
-        """Return the option that an annotation declares; None: it has no `Option`."""
-        kind, *more = get_args(annotation) if get_origin(annotation) is Annotated else [annotation]
-        for each in more:
-            if isinstance(each, Option):
-                return cls(name, each.type or OPTION_TYPES[kind], default, is_positional, each)
-        return None
+    def from_field(cls, field: Field[Any]) -> DeclaredOption | None:
+        """Return the option that a field declares; None: it has no `Option`."""
+        if get_origin(field.type) is not Annotated:
+            return None
+        kind, option = get_args(field.type)
+        return cls(field.name, option.type or OPTION_TYPES[kind], _default(field), not field.kw_only, option)
+
+
+def _default(field: Field[Any]) -> Any:
+    return Parameter.empty if field.default is MISSING else field.default
 
 
 @cache
 def declared_options(arguments: type) -> tuple[DeclaredOption, ...]:
     """Return the options that a class of arguments declares, the positional ones first."""
-    options = [
-        DeclaredOption.from_annotation(
-            each.name,
-            each.type,
-            Parameter.empty if each.default is MISSING else each.default,
-            is_positional=not each.kw_only,
-        )
-        for each in fields(arguments)
-    ]
-    return tuple(sorted(filter(None, options), key=lambda each: not each.is_positional))
+    options: list[DeclaredOption] = []
+    for each in fields(arguments):
+        if (declared := DeclaredOption.from_field(each)) is not None:
+            names = [option.name for option in options]
+            place = declared.option.place_after
+            options.insert(names.index(place) + 1 if place else len(options), declared)
+    return tuple(sorted(options, key=lambda each: not each.is_positional))
 
 
 def python_signature(arguments: type, returns: Any) -> Signature:
     """Return the signature of a function in Python that takes these arguments, with the names of their types as texts."""
+    names = {each.name: each.type.name for each in declared_options(arguments)}
     parameters = [
         Parameter(
             each.name,
             Parameter.KEYWORD_ONLY if each.kw_only else Parameter.POSITIONAL_OR_KEYWORD,
-            default=Parameter.empty if each.default is MISSING else each.default,
-            annotation=option.type.name if option else OPTION_TYPES[each.type].name,
+            default=_default(each),
+            annotation=names.get(each.name) or OPTION_TYPES[each.type].name,
         )
-        for each, option in (
-            (each, DeclaredOption.from_annotation(each.name, each.type, None)) for each in fields(arguments)
-        )
+        for each in fields(arguments)
     ]
     return Signature(sorted(parameters, key=lambda each: each.kind), return_annotation=returns)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable, Iterable, Mapping
 from datetime import date
+from enum import StrEnum
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple, TypeVar, get_args
@@ -23,8 +24,20 @@ FailOn = Literal["critical", "major", "minor", "never"]
 Handedness = Literal["auto", "lht", "rht"]
 Visibility = Literal["line-of-sight", "none"]
 ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
+Format = Literal["text", "json"]
+"""Formats of a result on stdout."""
 _WORDS = {True: "yes", False: "no"}
 _Word = TypeVar("_Word", bound=str)
+
+
+class ReportFile(StrEnum):
+    """`ReportFormat` as an enumeration, because Typer has no lists of a `Literal`."""
+
+    HTML = "html"
+    JUNIT = "junit"
+    SARIF = "sarif"
+    XQAR = "xqar"
+    MARKDOWN = "markdown"
 
 
 def to_texts(value: Paths | None) -> tuple[str, ...]:
@@ -107,7 +120,14 @@ OPTION_TYPES: Final[dict[Any, OptionType]] = {
     bool | None: OptionType("bool | None", bool | None),
     **{
         each: OptionType(name, each)
-        for name, each in (("FailOn", FailOn), ("Handedness", Handedness), ("Visibility", Visibility))
+        for name, each in (
+            ("FailOn", FailOn),
+            ("Handedness", Handedness),
+            ("Visibility", Visibility),
+            ("Format", Format),
+            ("int", int),
+            ("list[ReportFile] | None", list[ReportFile] | None),
+        )
     },
 }
 """Type of an option's annotation -> its names and conversion."""
