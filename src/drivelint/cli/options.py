@@ -86,7 +86,7 @@ def with_declared_options(command: Callable[..., None]) -> Callable[..., None]:
                     default=declared.default,
                     annotation=Annotated[declared.type.command_line_type, declared_info(declared)],
                 )
-                for declared in declared_options(each.annotation)
+                for declared in declared_options(groups[each.name])
             ]
         else:
             parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
