@@ -233,8 +233,7 @@ class CheckArguments(ExitCodeArguments, RuleArguments, OutputArguments, DriveArg
         ),
     ] = None
     baseline: Annotated[
-        AnyPath | None,
-        Option("An earlier result. Its findings are known; only new ones can fail the run.", "DIR"),
+        AnyPath | None, Option("An earlier result. Its findings are known; only new ones can fail the run.", "DIR")
     ] = None
     waivers: Waivers = None
     today: Today = None
