@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from drivelint.pack import PackRequest
 
 
-def parse_today(text: str | None) -> date:
-    """Read the date that decides whether a waiver has expired; without a text, the system's date. Errors: `UsageError`."""
-    if text is None:
+def parse_today(day: date | str | None) -> date:
+    """Return the date that decides whether a waiver has expired; without one, the system's date. Errors: `UsageError`."""
+    if day is None:
         return datetime.now().astimezone().date()
+    text = day.isoformat() if isinstance(day, date) else day
     try:
         return date.fromisoformat(text)
     except ValueError as error:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import date
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from drivelint import demo, option_values, run
-from drivelint.api import options
-from drivelint.api.arguments import with_argument_checks
+from drivelint.api.arguments import with_argument_checks, with_arguments_of
 from drivelint.api.audit_result import AuditResult
 from drivelint.api.check_result import CheckResult
 from drivelint.api.compared import Comparison, diff
@@ -24,6 +22,9 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import UsageError
 from drivelint.formats import registry
 from drivelint.gate import GateInputs
+from drivelint.options.arguments import CheckArguments, ReadTraceArguments
+from drivelint.options.declaration import engine_values, options_of_engine
+from drivelint.options.types import to_path
 from drivelint.report import outputs
 from drivelint.result import request
 from drivelint.result.evidence import lane_shapes_of_map
@@ -33,8 +34,8 @@ from drivelint.result.names import RUN_FILE
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.api.options import AnyPath, Assignments, FailOn, Handedness, Pair, Paths, Texts, Visibility
     from drivelint.api.progress import NoteKeeper
+    from drivelint.options.types import AnyPath
     from drivelint.result.model import Result
 
 __all__ = [
@@ -52,48 +53,8 @@ __all__ = [
 ]
 
 
-@with_argument_checks
-def check(
-    traces: Paths,
-    *,
-    map: AnyPath | None = None,  # noqa: A002 - the option's name
-    map_dir: AnyPath | None = None,
-    map_offset: Pair = None,
-    map_origin: Pair = None,
-    handedness: Handedness = "auto",
-    mapping: AnyPath | None = None,
-    topic: str | None = None,
-    ego: str | int | None = None,
-    sensor_range: float | None = None,
-    visibility: Visibility = "line-of-sight",
-    ego_size: str | tuple[float, ...] | None = None,
-    env: Assignments = None,
-    rules: Texts = None,
-    ignore: Texts = None,
-    profile: Texts = None,
-    param: Assignments = None,
-    rules_dir: Paths | None = None,
-    fail_on: FailOn = "critical",
-    strict: bool = False,
-    require: Texts = None,
-    min_judged: float | None = None,
-    out: AnyPath | None = None,
-    overwrite: bool = False,
-    evidence: AnyPath | None = None,
-    sign: AnyPath | None = None,
-    margins: bool = False,
-    keep_db: bool = False,
-    annotate: bool = True,
-    pictures: bool = True,
-    robustness: bool | None = None,
-    confidence: float | None = None,
-    baseline: AnyPath | None = None,
-    waivers: AnyPath | None = None,
-    today: date | str | None = None,
-    memory: str | None = None,
-    rule_timeout: float = 30.0,
-    progress: bool = False,
-) -> CheckResult:
+@with_arguments_of(CheckArguments)
+def check(arguments: CheckArguments) -> CheckResult:
     """Judge recorded drives against the rules.
 
     The keywords are the options of `drivelint check`, see `drivelint check --help`. A repeatable option takes one value or several;
@@ -102,66 +63,44 @@ def check(
     with the reasons.
     """
     with rewrite_options_in_errors():
-        paths, folder = options.to_texts(traces), options.to_path(out)
-        if not paths:
+        values, folder = engine_values(arguments), to_path(arguments.out)
+        if not values["traces"]:
             raise UsageError("no traces: name files, globs or folders")
-        chosen = options.to_texts(rules)
-        if rules is not None and not chosen:
+        if arguments.rules is not None and not values["rules"]:
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
-        if keep_db and folder is None:
+        if arguments.keep_db and folder is None:
             raise UsageError("--keep-db writes a file: name its folder with --out DIR")
-        robustness = option_values.robustness_option_with_confidence(confidence, robustness)
-        day = option_values.parse_today(today.isoformat() if isinstance(today, date) else today)
+        robustness = option_values.robustness_option_with_confidence(arguments.confidence, arguments.robustness)
         gate_inputs = GateInputs.from_files(
-            options.to_path(baseline),
-            options.to_path(waivers),
+            values["baseline"],
+            values["waivers"],
             None,
-            day,
+            option_values.parse_today(arguments.today),
             folder,
-            confidence=None if confidence is None else float(confidence),
+            confidence=values["confidence"],
         )
-        pack = option_values.pack_request(options.to_path(evidence), options.to_path(sign), folder, overwrite=overwrite)
-        settings = run.CheckOptions(
-            traces=paths,
-            **options.map_input_fields(
-                map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
-            ),
-            **options.drive_input_fields(
-                ego=ego,
-                mapping=mapping,
-                topic=topic,
-                sensor_range=sensor_range,
-                visibility=visibility,
-                ego_size=ego_size,
-                env=env,
-            ),
-            rules=chosen,
-            ignore=options.to_texts(ignore),
-            profiles=options.to_texts(profile),
-            params=options.to_assignments(param),
-            rules_dirs=tuple(Path(each) for each in options.to_texts(rules_dir)),
-            fail_on=options.require_one_of("fail_on", fail_on, options.FailOn),
-            strict=strict,
-            require=options.to_texts(require),
-            min_judged=None if min_judged is None else float(min_judged),
-            margins=margins,
-            keep_db=keep_db,
-            annotate=annotate and folder is not None,
-            pictures=pictures,
+        pack = option_values.pack_request(
+            values["evidence_pack"], values["sign"], folder, overwrite=arguments.overwrite
+        )
+        settings = options_of_engine(
+            run.CheckOptions,
+            values,
+            annotate=arguments.annotate and folder is not None,
             evidence=True,
             robustness=robustness,
-            memory=option_values.parse_memory(memory),
-            rule_timeout=rule_timeout,
         )
-        scratch = TemporaryDirectory(prefix="drivelint-") if margins and folder is None else None
-        with outputs.working_folder(folder, overwrite=overwrite) as work, note_keeper(progress) as listener:
+        scratch = TemporaryDirectory(prefix="drivelint-") if arguments.margins and folder is None else None
+        with (
+            outputs.working_folder(folder, overwrite=arguments.overwrite) as work,
+            note_keeper(arguments.progress) as listener,
+        ):
             place = work if scratch is None else Path(scratch.name)
 
             def gate_and_write(result: Result) -> Result:
                 if gate_inputs is not None:
                     result = gate_inputs.apply_to(result)
                 if folder is not None:
-                    outputs.write(result, folder, work, overwrite=overwrite)
+                    outputs.write(result, folder, work, overwrite=arguments.overwrite)
                 return result
 
             result = gate_and_write(_run_interruptible_check(replace(settings, out=place), listener, gate_and_write))
@@ -206,23 +145,8 @@ def write_demo(folder: AnyPath) -> list[Path]:
         return demo.write(Path(folder))
 
 
-@with_argument_checks
-def read_trace(
-    path: AnyPath,
-    *,
-    map: AnyPath | None = None,  # noqa: A002 - the option's name
-    map_dir: AnyPath | None = None,
-    map_offset: Pair = None,
-    map_origin: Pair = None,
-    handedness: Handedness = "auto",
-    mapping: AnyPath | None = None,
-    topic: str | None = None,
-    ego: str | int | None = None,
-    sensor_range: float | None = None,
-    visibility: Visibility = "line-of-sight",
-    ego_size: str | tuple[float, ...] | None = None,
-    env: Assignments = None,
-) -> TraceTables:
+@with_arguments_of(ReadTraceArguments)
+def read_trace(arguments: ReadTraceArguments) -> TraceTables:
     """Read one recorded drive into tables, checked and in SI units, as `check` reads it, and return them; the ego may be missing.
 
     With a map, given or embedded in the log, the table `lanes` has its lanes, and the drive is in the map's coordinates.
@@ -230,20 +154,7 @@ def read_trace(
     read or does not cover the drive.
     """
     with rewrite_options_in_errors():
-        asked = DriveInput(
-            **options.map_input_fields(
-                map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
-            ),
-            **options.drive_input_fields(
-                ego=ego,
-                mapping=mapping,
-                topic=topic,
-                sensor_range=sensor_range,
-                visibility=visibility,
-                ego_size=ego_size,
-                env=env,
-            ),
-        )
-        trace = registry.read_trace(Path(path), asked.ingest_options(need_ego=False))
-        environment, trace = MapLibrary(asked).find(trace)
+        drive = DriveInput(**engine_values(arguments))
+        trace = registry.read_trace(Path(arguments.path), drive.ingest_options(need_ego=False))
+        environment, trace = MapLibrary(drive).find(trace)
         return TraceTables(trace, None if environment is None else lane_shapes_of_map(environment))

@@ -6,7 +6,7 @@ import inspect
 import reprlib
 from collections.abc import Callable, Collection, Iterable, Mapping
 from datetime import date
-from functools import wraps
+from functools import update_wrapper, wraps
 from numbers import Integral, Real
 from os import PathLike
 from typing import Any, Final, ParamSpec, TypeVar
@@ -14,10 +14,12 @@ from typing import Any, Final, ParamSpec, TypeVar
 import numpy as np
 
 from drivelint.errors import UsageError
+from drivelint.options.declaration import python_signature
 from drivelint.phrases import hint
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
+_A = TypeVar("_A")
 
 
 def _is_path(value: object) -> bool:
@@ -53,7 +55,7 @@ _CHECK_OF_TYPE: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
     "tuple[float, ...]": (_are_numbers, "numbers"),
 }
-"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.require_one_of` checks `Literal` types."""
+"""Annotation in a signature -> test of a value, and the name of the type in messages. `require_one_of` checks `Literal` types."""
 
 
 def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
@@ -80,3 +82,19 @@ def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
         return function(*args, **keywords)
 
     return checked_call
+
+
+def with_arguments_of(arguments: Callable[_P, _A]) -> Callable[[Callable[[_A], _R]], Callable[_P, _R]]:
+    """Return a decorator: the function of a dataclass of arguments becomes a function of its fields, with argument checks."""
+
+    def decorate(function: Callable[[_A], _R]) -> Callable[_P, _R]:
+        def call(*args: _P.args, **keywords: _P.kwargs) -> _R:
+            return function(arguments(*args, **keywords))
+
+        update_wrapper(call, function, updated=())
+        vars(call).pop("__wrapped__")
+        signature = python_signature(arguments, function.__annotations__["return"])  # type: ignore[arg-type]
+        vars(call)["__signature__"] = signature
+        return with_argument_checks(call)
+
+    return decorate

@@ -22,7 +22,7 @@ from drivelint.result.counts import one_finding_per_event
 from drivelint.result.model import exit_status
 
 if TYPE_CHECKING:
-    from drivelint.api.options import AnyPath
+    from drivelint.options.types import AnyPath
 
 _SCHEMA_OF_TABLE = {
     "verdicts": "verdict",

@@ -12,18 +12,18 @@ from drivelint.api.arguments import with_argument_checks
 from drivelint.api.explained import Explained
 from drivelint.api.keywords import replace_options_by_keywords, rewrite_options_in_errors
 from drivelint.api.notebook import one_line_summary, summary_html
-from drivelint.api.options import ReportFormat, require_one_of, to_path
 from drivelint.api.tables import Table, TableSet
 from drivelint.api.timeline import Timeline, timeline
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
+from drivelint.options.types import ReportFormat, require_one_of, to_path
 from drivelint.report import outputs
 from drivelint.result.model import exit_status
 from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.publishing import publish
 
 if TYPE_CHECKING:
-    from drivelint.api.options import AnyPath
+    from drivelint.options.types import AnyPath
     from drivelint.result.model import Result
 
 _MARGINS_FILE: Final = "margins.parquet"

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.api.check_result import CheckResult
 from drivelint.api.notebook import preformatted_html
-from drivelint.api.options import FailOn, require_one_of
 from drivelint.errors import UsageError
 from drivelint.gate import compare_results, descriptions
+from drivelint.options.types import FailOn, require_one_of
 from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
-    from drivelint.api.options import AnyPath
     from drivelint.gate import ComparedFinding, Difference
+    from drivelint.options.types import AnyPath
     from drivelint.result.gate import Gate
     from drivelint.result.model import Result
 

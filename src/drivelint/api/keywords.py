@@ -7,14 +7,21 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import DriveLintError
+from drivelint.options.arguments import CheckArguments
+from drivelint.options.declaration import declared_options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_FLAGS: Final = frozenset({"strict", "overwrite", "margins", "keep-db", "annotate", "pictures", "robustness"})
 _OPTION: Final = re.compile(
-    r"(?<![\w-])(?P<command>check )?--(?P<no>no-)?(?P<name>[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b| (?=['\"\d]))?"
+    r"(?<![\w-])(?P<command>check )?(?P<flag>--[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b| (?=['\"\d]))?"
 )
+_KEYWORD_OF_FLAG: Final = {
+    flag: (each.name, str(not flag.startswith("--no-")) if each.type.command_line_type in {bool, bool | None} else None)
+    for each in declared_options(CheckArguments)
+    for flag in each.flags[0].split("/")
+}
+"""Flag of the command line -> keyword in Python, and the keyword's value if the flag has none."""
 
 
 @contextmanager
@@ -28,13 +35,12 @@ def rewrite_options_in_errors() -> Iterator[None]:
 
 
 def replace_options_by_keywords(text: str) -> str:
-    """Return a message with options changed to keywords; an option after its command (`check --out`) is not changed."""
+    """Return a message with options changed to keywords, but not options that Python lacks, or after their command (`check --out`)."""
     return _OPTION.sub(_keyword_text, text)
 
 
 def _keyword_text(option: re.Match[str]) -> str:
-    if option["command"]:
+    if option["command"] or option["flag"] not in _KEYWORD_OF_FLAG:
         return option[0]
-    name = option["name"].replace("-", "_")
-    value = str(not option["no"]) if option["name"] in _FLAGS else option["metavar"]
-    return f"{name}={value or ''}"
+    name, value = _KEYWORD_OF_FLAG[option["flag"]]
+    return f"{name}={value or option['metavar'] or ''}"

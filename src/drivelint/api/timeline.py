@@ -18,7 +18,7 @@ from drivelint.report.html.worst_moment import finding_key
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from drivelint.api.options import AnyPath
+    from drivelint.options.types import AnyPath
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 

@@ -10,6 +10,7 @@ import os
 import sys
 from contextlib import redirect_stdout
 from copy import copy
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, NoReturn
 
@@ -22,7 +23,6 @@ from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
-from drivelint.cli.setting_options import names_of_path_settings, params_by_setting
 from drivelint.errors import (
     LEAST_ADDRESS_SPACE_BYTES,
     DriveLintError,
@@ -32,8 +32,11 @@ from drivelint.errors import (
     describe_machine_error,
     memory_limit_of_process_bytes,
 )
+from drivelint.options.arguments import DriveArguments  # noqa: TC001 - read at runtime
+from drivelint.options.declaration import engine_values
+from drivelint.options.settings_file import settings_of_check
 from drivelint.phrases import terminal_safe, terminal_safe_json, terminal_safe_line
-from drivelint.settings import find_settings, read_settings
+from drivelint.settings import find_settings
 from drivelint.without_pandas import block_pandas_import
 
 if TYPE_CHECKING:
@@ -93,13 +96,13 @@ def demo(
 
 
 @app.command()
-@options.add_drive_options
+@options.with_declared_options
 def inspect(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
     rules: Annotated[Texts, option("--rules", "SEL", "Rules to list, as in check. Repeatable. Default: ukhc.")] = None,
-    rules_dir: options.RulesDirs = None,
+    rules_dirs: options.RulesDirs = None,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",
 ) -> None:
@@ -111,9 +114,9 @@ def inspect(
 
     request = inspection.InspectRequest(
         trace=trace,
-        **drive,
+        **engine_values(drive),
         rules=tuple(rules or ()),
-        rules_dirs=tuple(rules_dir or ()),
+        rules_dirs=tuple(rules_dirs or ()),
         memory=option_values.parse_memory(memory),
     )
     found = run_interruptible(lambda: inspection.inspect(request))
@@ -127,7 +130,7 @@ def inspect(
 
 
 @app.command()
-@options.add_drive_options
+@options.with_declared_options
 def convert(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
@@ -144,7 +147,7 @@ def convert(
         ),
     ] = None,
     folder: Annotated[Path | None, option("--in", "DIR", "With --clip: the folder that check --out wrote.")] = None,
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
 ) -> None:
     """Convert a log to OSI in MCAP, or to Parquet.
 
@@ -154,7 +157,7 @@ def convert(
     from drivelint import convert as converter
     from drivelint.engine.memory import DEFAULT_MEMORY_BYTES
 
-    request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
+    request = converter.ConvertRequest(trace=trace, to=to, out=out, **engine_values(drive))
     if (clip is None) is not (folder is None):
         raise UsageError(
             "--clip and --in need each other: --clip gives the finding, --in the folder that check --out wrote"
@@ -278,14 +281,9 @@ def _default_options_of_settings_file() -> dict[str, Any]:
     name = "".join(sys.argv[1:2])
     if name not in {"check", "inspect", "convert"} or (file := find_settings()) is None:
         return {}
-    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-    params = commands["check"].params
-    known = {key: (p.name, p.multiple) for key, p in params_by_setting(params).items()}
-    paths = names_of_path_settings(params)
-    taken = {p.name for p in commands[name].params}
-    if name != "check":
-        taken -= {"out", "format_"}
-    values = {param: value for param, value in read_settings(known, file, paths).items() if param in taken}
+    (callback,) = (each.callback for each in app.registered_commands if _command_name(each) == name and each.callback)
+    of_command = signature(callback).parameters.keys() - (set() if name == "check" else {"out", "format_"})
+    values = {param: value for param, value in settings_of_check(file).items() if param in of_command}
     map_file = (
         None if _OPTIONS_REPLACING_MAP_SETTING & {word.partition("=")[0] for word in sys.argv} else values.get("map")
     )

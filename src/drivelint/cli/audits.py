@@ -13,6 +13,8 @@ from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.options.arguments import DriveArguments, ExitCodeArguments, RuleArguments  # noqa: TC001 - read at runtime
+from drivelint.options.declaration import engine_values
 from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 from drivelint.settings import find_settings
 
@@ -26,29 +28,26 @@ DeltaFolder = Annotated[
 ]
 
 
-@options.add_drive_options
+@options.with_declared_options
 def audit(
     *,
     sources: Annotated[
         list[str], argument("SOURCE", "Recorded drives: files, globs, folders, or a manifest (Parquet or CSV) of them.")
     ],
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
     out: Annotated[
         str, option("--out", "DEST", "Folder for the results. After an interruption, the same command continues there.")
     ],
-    rules: options.RulesAsInCheck = None,
-    ignore: options.Ignore = None,
-    profile: options.ProfileAsInCheck = None,
-    param: options.Param = None,
-    rules_dir: options.RulesDirs = None,
+    selection: RuleArguments,
     robustness: Annotated[
         bool,
-        options.robustness_option(
-            "Also judge copies with recording errors, as check does, to find how sure each finding is. Takes half as long again."
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "Also judge copies with recording errors, as check does, to find how sure each finding is. Takes half as long again.",
         ),
     ] = False,
-    fail_on: options.FailOnOption = "critical",
-    strict: Annotated[bool, option("--strict", None, "Exit code 4 if a rule is unknown.")] = False,
+    exit_codes: ExitCodeArguments,
     min_judged: options.MinJudged = None,
     baseline: Annotated[
         Path | None,
@@ -137,19 +136,12 @@ def audit(
         gate = GateInputs.from_files(baseline, waivers, file, day, Path(out), load=gated.load_check_or_audit)
     request = AuditRequest(
         sources=tuple(sources),
-        **drive,
+        **engine_values(drive),
+        **engine_values(exit_codes),
         out=out,
         settings=JudgeSettings(
-            rules=tuple(rules or ()),
-            ignore=tuple(ignore or ()),
-            profiles=tuple(profile or ()),
-            params=tuple(param or ()),
-            rules_dirs=tuple(rules_dir or ()),
-            robustness=robustness,
-            memory=option_values.parse_memory(memory),
+            **engine_values(selection), robustness=robustness, memory=option_values.parse_memory(memory)
         ),
-        fail_on=fail_on,
-        strict=strict,
         min_judged=min_judged,
         workers=workers,
         worker_memory=None if worker_memory is None else option_values.parse_memory(worker_memory),
@@ -169,12 +161,12 @@ def audit(
         except KeyboardInterrupt:
             typer.echo(f"drivelint: {_stored_results_sentence(out)}", err=True)
             raise
-    code, told, why = counted.exit_code(fail_on, strict=strict), list[str](), ""
+    code, told, why = counted.exit_code(exit_codes.fail_on, strict=exit_codes.strict), list[str](), ""
     if gate is not None or min_judged is not None:
         result = gated.apply_gate(out, gate)
         code, told = gated.exit_code(result, counted), list(gated.gate_lines(result))
         why = gated.exit_reason(result, code)
-    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=fail_on, gate_reason=why)))
+    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=exit_codes.fail_on, gate_reason=why)))
     if pack is not None:
         packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(int(code))

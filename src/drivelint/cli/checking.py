@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path  # noqa: TC003 - Typer reads the types
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
 from drivelint import option_values
-from drivelint.cli import completion, options, packs, streams
+from drivelint.cli import options, packs, streams
 from drivelint.cli.console import progress as bar
 from drivelint.cli.console import (
     rich_text,
@@ -18,14 +17,17 @@ from drivelint.cli.console import (
     say_kept_drives,
     say_nothing_kept,
 )
-from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
+from drivelint.options.arguments import CheckCommandArguments, DriveArguments
+from drivelint.options.declaration import engine_values, options_of_engine
+from drivelint.options.types import Format, to_path
 from drivelint.phrases import terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from drivelint.engine.interruption import Interruption
     from drivelint.report.progress import Progress
@@ -33,126 +35,8 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions
 
 
-@options.add_drive_options
-def check(
-    *,
-    traces: Annotated[
-        list[str], argument("TRACE", "Recorded drives: files, globs, folders, or a manifest of them, as in audit.")
-    ],
-    drive: options.DriveInputValues,
-    out: Annotated[
-        Path | None, option("--out", "DIR", "Folder for the result files. An earlier result in it is replaced.")
-    ] = None,
-    overwrite: options.Overwrite = False,
-    rules: Annotated[
-        Texts,
-        options.rules_option(
-            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc, in Germany (--env, --map) of stvo too."
-        ),
-    ] = None,
-    ignore: options.Ignore = None,
-    profile: Annotated[
-        Texts,
-        options.profile_option(
-            "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
-        ),
-    ] = None,
-    param: options.Param = None,
-    rules_dir: options.RulesDirs = None,
-    fail_on: options.FailOnOption = "critical",
-    strict: options.Strict = False,
-    require: Annotated[
-        Texts,
-        option(
-            "--require",
-            "SEL",
-            "Exit code 4 if one of these rules is unknown. Repeatable.",
-            autocompletion=completion.rule_ids,
-        ),
-    ] = None,
-    min_judged: options.MinJudged = None,
-    format_: options.FormatOption = "text",
-    report: Annotated[
-        list[options.ReportFormat] | None,
-        option(
-            "--report",
-            "html|junit|sarif|xqar|markdown",
-            "With --out: also write this report, as drivelint report does. report.html and junit.xml are always written. Repeatable.",
-        ),
-    ] = None,
-    margins: Annotated[
-        bool, option("--margins", None, "Also write margins.parquet, with a row per judged step.")
-    ] = False,
-    keep_db: Annotated[
-        bool, option("--keep-db", None, "Also keep the database with the tables of every stage.")
-    ] = False,
-    annotate: Annotated[
-        bool,
-        option(
-            "--annotate/--no-annotate",
-            None,
-            "With --out: write a copy of each log that includes its verdicts, for a viewer.",
-        ),
-    ] = True,
-    pictures: Annotated[
-        bool,
-        option("--pictures/--no-pictures", None, "With --out: show frames of the log's own cameras beside findings."),
-    ] = True,
-    robustness: Annotated[
-        bool | None,
-        options.robustness_option(
-            "Count in how many copies of the drive with recording errors a critical or major finding stays. "
-            "Default: only for the gravest finding of each rule, and for findings that small errors may remove."
-        ),
-    ] = None,
-    confidence: Annotated[
-        float | None,
-        option(
-            "--confidence",
-            "SHARE",
-            "Only findings that stay in at least this share of their copies can fail the run, such as 0.95. Default: all findings can.",
-            min=0.0,
-            max=1.0,
-        ),
-    ] = None,
-    baseline: options.Baseline = None,
-    waivers: options.Waivers = None,
-    today: options.Today = None,
-    memory: options.MemorySize = None,
-    rule_timeout: Annotated[
-        float,
-        option(
-            "--rule-timeout",
-            "S",
-            "Seconds that a rule may compute on a batch of drives. A rule that takes longer is an error; the others continue.",
-            min=0.1,
-        ),
-    ] = 30.0,
-    evidence: options.Evidence = None,
-    sign: options.Sign = None,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary.")] = False,
-    jobs: Annotated[
-        int,
-        typer.Option(
-            "--jobs",
-            "-j",
-            metavar="N",
-            min=1,
-            help="Number of processes. Each judges a part of the logs; the result is the same.",
-        ),
-    ] = 1,
-    cache: Annotated[
-        bool,
-        option(
-            "--cache/--no-cache",
-            None,
-            "If logs, map, rules and options are those of an earlier run, write and print the same as it did, without judging. "
-            "--no-cache always judges, and keeps no receipt.",
-            envvar="DRIVELINT_CHECK_CACHE",
-        ),
-    ] = True,
-    quiet: options.Quiet = False,
-) -> None:
+@options.with_declared_options
+def check(arguments: CheckCommandArguments) -> None:
     """Judge recorded drives against the rules.
 
     With --out: writes tables of verdicts and findings, report.html, and copies of the logs that include their verdicts.
@@ -165,14 +49,14 @@ def check(
     could be decided (with --strict or --require: some rule unknown; with --min-judged: too few rules decided); 75 the machine
     failed, try again; 130 interrupted: results so far are kept.
     """
-    arguments = dict(locals())
-
     from drivelint.cli.receipts import StoredRunOfCheck
 
-    settings_file = _find_and_print_settings_file(quiet=quiet)
-    robustness = option_values.robustness_option_with_confidence(confidence, robustness)
-    day = option_values.parse_today(today)
-    receipts = StoredRunOfCheck(arguments, day, settings_file)
+    engine_values(arguments, DriveArguments)  # an invalid value is an error before anything is printed
+    out, overwrite, baseline = to_path(arguments.out), arguments.overwrite, to_path(arguments.baseline)
+    settings_file = _find_and_print_settings_file(quiet=arguments.quiet)
+    robustness = option_values.robustness_option_with_confidence(arguments.confidence, arguments.robustness)
+    day = option_values.parse_today(arguments.today)
+    receipts = StoredRunOfCheck(vars(arguments), day, settings_file)
     with say_earlier_folder_on_failure(out):
         earlier = receipts.repeat_earlier_run()
     if earlier is not None:
@@ -181,38 +65,20 @@ def check(
 
     from drivelint import run
     from drivelint.engine.interruption import Interruption, NothingJudgedError
-    from drivelint.engine.memory import format_bytes, peak_bytes
     from drivelint.gate import GateInputs, refuse_to_overwrite_baseline
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
-    pack = option_values.pack_request(evidence, sign, out, overwrite=overwrite)
+    pack = option_values.pack_request(to_path(arguments.evidence), to_path(arguments.sign), out, overwrite=overwrite)
     refuse_to_overwrite_baseline(baseline, out)
-    settings = run.CheckOptions(
-        traces=tuple(traces),
-        **drive,
-        rules=tuple(rules or ()),
-        ignore=tuple(ignore or ()),
-        profiles=tuple(profile or ()),
-        params=tuple(param or ()),
-        rules_dirs=tuple(rules_dir or ()),
-        fail_on=fail_on,
-        strict=strict,
-        require=tuple(require or ()),
-        min_judged=min_judged,
-        margins=margins,
-        keep_db=keep_db,
-        annotate=annotate,
-        pictures=pictures,
-        robustness=robustness,
-        memory=option_values.parse_memory(memory),
-        rule_timeout=rule_timeout,
+    settings, interruption = (
+        options_of_engine(run.CheckOptions, engine_values(arguments), robustness=robustness),
+        Interruption(),
     )
-    interruption = Interruption()
     with (
         say_earlier_folder_on_failure(out),
-        working_folder(out, report or (), overwrite=overwrite) as work,
-        bar(quiet) as progress,
+        working_folder(out, arguments.report or (), overwrite=overwrite) as work,
+        bar(arguments.quiet) as progress,
     ):
         unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
@@ -222,7 +88,7 @@ def check(
             if gate_inputs is not None:
                 result = gate_inputs.apply_to(result)
             if out is not None:
-                grown = write(result, out, work, reports=report or (), overwrite=overwrite)
+                grown = write(result, out, work, reports=arguments.report or (), overwrite=overwrite)
             return result
 
         try:
@@ -230,11 +96,13 @@ def check(
                 settings = _with_manifests_replaced_by_logs(
                     replace(settings, out=work), are_results_packed=pack is not None
                 )
-                gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
+                gate_inputs = GateInputs.from_files(
+                    baseline, to_path(arguments.waivers), settings_file, day, out, confidence=arguments.confidence
+                )
                 judged = run_interruptible(
                     lambda: _judge(
                         settings,
-                        jobs,
+                        arguments.jobs,
                         progress,
                         interruption=interruption,
                         unstoppable_rule_handler=unstoppable_rule_handler,
@@ -246,20 +114,29 @@ def check(
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
         result = gate_and_write(judged)
-        stdout, code = _stdout_text(result, format_, out, verbose=verbose), int(exit_status(result).code)
+        stdout, code = (
+            _stdout_text(result, arguments.format_, out, verbose=arguments.verbose),
+            int(exit_status(result).code),
+        )
         receipts.store_receipt(
             result, stdout, code, files_written_while_judging=grown, gate=gate_inputs, interruption=interruption
         )
-        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
-            progress.note(
-                f"the process took at most {format_bytes(most)} of memory, including memory outside the database"
-            )
+        if arguments.memory is not None and arguments.jobs == 1:
+            _note_peak_memory(progress)
     typer.echo(stdout, nl=False)
     if result.interrupted:
         say_kept_drives(result.drives["status"].to_pylist(), out)
     elif pack is not None:
         packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(code)
+
+
+def _note_peak_memory(progress: Progress) -> None:
+    """Note how much memory this process took, not counting processes that it started."""
+    from drivelint.engine.memory import format_bytes, peak_bytes
+
+    if (most := peak_bytes()) is not None:
+        progress.note(f"the process took at most {format_bytes(most)} of memory, including memory outside the database")
 
 
 def _find_and_print_settings_file(*, quiet: bool) -> Path | None:
@@ -313,7 +190,7 @@ def _judge(
     return run.check(settings, progress, interruption, unstoppable_rule_handler, keep)
 
 
-def _stdout_text(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
+def _stdout_text(result: Result, format_: Format, out: Path | None, *, verbose: bool) -> str:
     """Return the text of a result for stdout."""
     from drivelint.report import summary, terminal
     from drivelint.result.one_line import result_on_one_line

@@ -66,10 +66,9 @@ def docs(
             err=True,
         )
     elif topic == SETTINGS_SCHEMA_TOPIC:
-        from drivelint.cli.setting_options import settings_schema
+        from drivelint.options.settings_file import settings_schema
 
-        root: Any = ctx.find_root().command
-        typer.echo(settings_schema(root.commands["check"].params), nl=False)
+        typer.echo(settings_schema(), nl=False)
     elif topic == HEADER_SCHEMA_TOPIC:
         from drivelint.catalogue import json_schema
 

@@ -101,7 +101,7 @@ def what_if(
         str | None,
         option("--by", "TAG", "Count verdicts by a tag of the manifest, or by a situation such as weather."),
     ] = None,
-    format_: Annotated[options.Format, option("--format", None, "Format of the output on stdout.")] = "text",
+    format_: options.FormatOption = "text",
 ) -> None:
     """Show which verdicts of an audit change with another value of a parameter, without reading a log.
 

@@ -6,12 +6,13 @@ from typing import Any, Final
 
 from typer.core import TyperCommand
 
-from drivelint.cli import options
+from drivelint.options.arguments import DriveArguments, RuleArguments
+from drivelint.options.declaration import declared_options
 
 _OPTIONS_BY_HEADING: Final = {
     "Watching": ("halt_on", "warn", "advise", "on", "serve", "replay", "window", "every", "idle"),
-    "Input": tuple(options.DRIVE_OPTIONS),
-    "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
+    "Input": tuple(each.field for each in declared_options(DriveArguments)),
+    "Rules": tuple(each.field for each in declared_options(RuleArguments)),
     "Gate": ("fail_on", "strict", "require", "min_judged", "confidence", "baseline", "waivers", "today"),
     "Output": (
         "out",
@@ -22,7 +23,7 @@ _OPTIONS_BY_HEADING: Final = {
         "keep_db",
         "annotate",
         "pictures",
-        "evidence",
+        "evidence_pack",
         "sign",
         "verbose",
         "jobs",

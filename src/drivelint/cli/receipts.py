@@ -72,13 +72,7 @@ class StoredRunOfCheck:
         self._overwrite: bool = options["overwrite"]
         self._quiet: bool = options["quiet"]
         self._day = day.isoformat()
-        drive = options["drive"]
-        paths = [
-            options["baseline"],
-            options["waivers"],
-            *(drive[name] for name in ("map", "map_dir", "mapping")),
-            settings,
-        ]
+        paths = [*(options[name] for name in ("baseline", "waivers", "map", "map_dir", "mapping")), settings]
         self._named = [*options["traces"], *(options["rules_dir"] or ()), *(path for path in paths if path is not None)]
         self._is_output = OutputPathTest(self._out)
         self._recorder: InputRecorder | None = None

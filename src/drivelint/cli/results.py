@@ -12,13 +12,14 @@ from drivelint.cli import checks, completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
+from drivelint.options.types import FailOn, ReportFile
 from drivelint.phrases import terminal_safe_json
 
 
 def report(
     folder: Annotated[Path, argument("DIR", "The folder that check --out or audit --out wrote.")],
     to: Annotated[
-        list[options.ReportFormat] | None,
+        list[ReportFile] | None,
         option(
             "--to",
             "html|junit|sarif|xqar|markdown",
@@ -92,7 +93,7 @@ def report(
     """
     from drivelint.fleet_report.audit_views import is_audit, path_or_url
 
-    formats = to or [options.ReportFormat.HTML]
+    formats = to or [ReportFile.HTML]
     of_the_sheet = pdf or trace is not None or map_ is not None
     of_an_audit = bool(by) or baseline is not None or drive_pages is not None or moments is not None
     if is_audit(dest := path_or_url(folder)):
@@ -124,7 +125,7 @@ def diff(
     new: Annotated[Path, argument("NEW", "The folder that the same command wrote later.")],
     format_: Annotated[options.DiffFormat, option("--format", None, "Format of the output on stdout.")] = "text",
     fail_on: Annotated[
-        options.FailOn | None,
+        FailOn | None,
         option("--fail-on", None, "Lowest severity of a new finding that causes exit code 1. Default: that of NEW."),
     ] = None,
     rows: Annotated[

@@ -14,6 +14,8 @@ from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible, say_earlier_folder_on_failure, say_nothing_kept
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
+from drivelint.options.arguments import DriveArguments, ExitCodeArguments, RuleArguments  # noqa: TC001 - read at runtime
+from drivelint.options.declaration import engine_values
 from drivelint.phrases import terminal_safe_json
 from drivelint.temporary import temporary_folder
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 Severity = Literal["critical", "major", "minor"]
 
 
-@options.add_drive_options
+@options.with_declared_options
 def watch(
     *,
     source: Annotated[
@@ -40,7 +42,7 @@ def watch(
     command: Annotated[
         list[str] | None, argument("[-- COMMAND...]", "A program to start, which writes the log.")
     ] = None,
-    drive: options.DriveInputValues,
+    drive: DriveArguments,
     halt_on: Annotated[
         Severity | None,
         option(
@@ -110,16 +112,15 @@ def watch(
         option("--out", "DIR", "Folder for the recording and, at the end, for the result files, as those of check."),
     ] = None,
     overwrite: options.Overwrite = False,
-    rules: options.RulesAsInCheck = None,
-    ignore: options.Ignore = None,
-    profile: options.ProfileAsInCheck = None,
-    param: options.Param = None,
-    rules_dir: options.RulesDirs = None,
-    fail_on: options.FailOnOption = "critical",
-    strict: options.Strict = False,
+    selection: RuleArguments,
+    exit_codes: ExitCodeArguments,
     robustness: Annotated[
         bool | None,
-        options.robustness_option("At the end, count how robust critical and major findings are, as check does."),
+        option(
+            "--robustness/--no-robustness",
+            None,
+            "At the end, count how robust critical and major findings are, as check does.",
+        ),
     ] = None,
     memory: options.MemorySize = None,
     quiet: options.Quiet = False,
@@ -144,15 +145,10 @@ def watch(
     settings = WatchOptions(
         source=source,
         command=tuple(command or ()),
-        **drive,
+        **engine_values(drive),
+        **engine_values(selection),
+        **engine_values(exit_codes),
         out=out,
-        rules=tuple(rules or ()),
-        ignore=tuple(ignore or ()),
-        profiles=tuple(profile or ()),
-        params=tuple(param or ()),
-        rules_dirs=tuple(rules_dir or ()),
-        fail_on=fail_on,
-        strict=strict,
         robustness=robustness,
         memory=option_values.parse_memory(memory),
         window_s=window,
