@@ -164,6 +164,14 @@ SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed, $limit AS required FROM 
     assert mutation.judge_mutants(rule) == mutation.MutationResult("pack.rule", True, 4, (), ())
 
 
+def test_sql_that_duckdb_cannot_plan_is_not_valid(tmp_path: Path) -> None:
+    """DuckDB binds a LEFT JOIN with a column of a table before the comma, but does not support it."""
+    sql = """
+SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, f.factor * $limit AS required
+FROM ego_state e, (SELECT 1.0 AS factor) f LEFT JOIN clock c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id"""
+    assert not is_valid_sql(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}))
+
+
 def test_a_join_after_a_cross_join_has_mutants_with_the_same_meaning(tmp_path: Path) -> None:
     """DuckDB prints CROSS JOIN as a comma, behind which `e` could not be joined to."""
     sql = """

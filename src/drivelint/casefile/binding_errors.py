@@ -80,7 +80,7 @@ def is_valid_sql(rule: Rule) -> bool:
             con.execute(_EXPLAIN + sql)
             if name == "reference":
                 _create_reference_table(con, sql)
-    except duckdb.ProgrammingError:
+    except (duckdb.ProgrammingError, duckdb.NotSupportedError):
         return False
     finally:
         con.execute("DROP TABLE IF EXISTS temp.reference")
