@@ -30,7 +30,7 @@ EGOS = ("ego", "once", "oncoming", "parked")
 TABLES = [
     table
     for table in declarations.column_comments()
-    if table not in ("drive", "rule", "_visited_cell", "_corridor_cell")
+    if table not in ("drive", "rule", "_corridor_cell")
 ]
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"

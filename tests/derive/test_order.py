@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 STEP = "SELECT 'd' AS drive_id, 'e' AS ego_id, range AS t_ns, range::INTEGER AS k, NULL AS dt_ns, 0 AS seg, 0.0 AS travel_m FROM range(5)"
-SLOW = "SELECT 'd' AS drive_id, sum(hash(a.range, b.range) % 7)::BIGINT AS cell FROM range(1000000) a, range(1000000) b"
+SLOW = "SELECT 'd' AS drive_id, 0 AS t_from_ns, sum(hash(a.range, b.range) % 7)::BIGINT AS t_to_ns FROM range(1000000) a, range(1000000) b"
 
 
 @pytest.fixture
@@ -33,9 +33,9 @@ def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
 
 
-CLOCK = """SELECT drive_id, ego_id, max(cell) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
-FROM step JOIN _visited_cell USING (drive_id) GROUP BY ALL"""
-CELL = "SELECT drive_id, max(t_ns) AS cell FROM step GROUP BY drive_id"
+CLOCK = """SELECT drive_id, ego_id, max(t_to_ns) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
+FROM step JOIN lost_time USING (drive_id) GROUP BY ALL"""
+LOST = "SELECT drive_id, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns FROM step GROUP BY drive_id"
 
 
 @pytest.mark.parametrize(("most", "n"), [(derive.MOST_STATES_FOR_EMPTINESS_TEST, 0), (-1, 5)])
@@ -57,7 +57,7 @@ def test_each_runs_after_what_it_reads(
 ) -> None:
     only(
         monkeypatch,
-        {"step": (STEP, set()), "_visited_cell": (CELL, {"step"}), "clock": (CLOCK, {"step", "_visited_cell"})},
+        {"step": (STEP, set()), "lost_time": (LOST, {"step"}), "clock": (CLOCK, {"step", "lost_time"})},
     )
     monkeypatch.setattr(derive, "LEAST_STATES_FOR_ONE_WORKER", large)  # on one connection, or on two
     told: list[str] = []
@@ -69,7 +69,7 @@ def test_each_runs_after_what_it_reads(
 
     monkeypatch.setattr(derive, "_fill_table", telling)
     derive.derive(con, ["clock"], are_map_tables=False, always_needed_tables=())
-    assert told == ["step", "_visited_cell", "clock"]
+    assert told == ["step", "lost_time", "clock"]
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 
 
@@ -78,19 +78,19 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, begins_late: bool
 ) -> None:
     only(
-        monkeypatch, {"_visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())}
+        monkeypatch, {"lost_time": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())}
     )
     fill = derive._fill_table
 
     def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: Any) -> int:
-        if begins_late and step.table == "_visited_cell":
+        if begins_late and step.table == "lost_time":
             time.sleep(0.3)
         return fill(con, step, *types, **old)
 
     monkeypatch.setattr(derive, "_fill_table", late)
     with pytest.raises(DriveLintError, match=r"^queries/library/log/step\.sql: .*'x'"):
-        derive.derive(con, ["step", "_visited_cell"], are_map_tables=False, always_needed_tables=())
-    assert con.execute("SELECT (SELECT count(*) FROM _visited_cell), (SELECT count(*) FROM step)").fetchall() == [
+        derive.derive(con, ["step", "lost_time"], are_map_tables=False, always_needed_tables=())
+    assert con.execute("SELECT (SELECT count(*) FROM lost_time), (SELECT count(*) FROM step)").fetchall() == [
         (0, 0)
     ]
 
@@ -100,10 +100,10 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
     con.execute("SET temp_directory = ''")
     only(
         monkeypatch,
-        {"_visited_cell": ("SELECT 'd' AS drive_id, range AS cell FROM range(20000000) ORDER BY hash(range)", set())},
+        {"lost_time": ("SELECT 'd' AS drive_id, range AS t_from_ns, range AS t_to_ns FROM range(20000000) ORDER BY hash(range)", set())},
     )
     with pytest.raises(duckdb.OutOfMemoryException):
-        derive.derive(con, ["_visited_cell"], are_map_tables=False, always_needed_tables=())
+        derive.derive(con, ["lost_time"], are_map_tables=False, always_needed_tables=())
 
 
 SAMPLES = (91, 91, 16, 91, 91, 34, 29, 23, 18, 17, 91)

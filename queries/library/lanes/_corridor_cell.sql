@@ -1,10 +1,10 @@
--- The grid cells of the strips beside the ego's chains that an actor visited at some time. A lanelet that the ego drives in every lap is
--- listed once.
+-- The grid cells of the strips beside the ego's chains that an actor visited at some time: the corridor is searched only there. A lanelet
+-- that the ego drives in every lap is listed once.
 -- lifetime: part
 CREATE TABLE _corridor_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip beside the segment may touch and that an actor visited (see _visited_cell)
+    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip of 15 m on both sides of the segment may touch, and that at some time contained the centre of an actor or a corner of an ego
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of any of the ego's chains
     k INTEGER NOT NULL,               -- number of the segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
@@ -25,36 +25,56 @@ CREATE TABLE _corridor_cell (
 
 INSERT INTO _corridor_cell BY NAME
 WITH chain_lanelet AS (SELECT DISTINCT c.drive_id, c.ego_id, l.environment_id, c.lanelet_id FROM chain c JOIN data_log l USING (drive_id)),
-lanelet_cell AS (
-    SELECT m.drive_id, m.ego_id, m.environment_id, s.cell, s.lanelet_id, s.k
-    FROM chain_lanelet m
-    JOIN _strip_cell s USING (environment_id, lanelet_id)
-    SEMI JOIN _visited_cell v ON v.drive_id = m.drive_id AND v.cell = s.cell
-),
--- Without a map: the strips beside the ego's own path. Its lane is as wide as the ego plus a small margin on both sides
--- (own_lane_beside_m).
-own_segment AS (
+segment AS (
+    SELECT NULL AS drive_id, NULL AS ego_id, g.*
+    FROM _lane_segment g
+    JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = g.lanelet_id AND n.drivable
+    SEMI JOIN chain_lanelet c ON c.environment_id = g.environment_id AND c.lanelet_id = g.lanelet_id
+    UNION ALL BY NAME
+    -- Without a map: the ego's own path. Its lane is as wide as the ego plus a small margin on both sides (own_lane_beside_m).
     SELECT
-        w.*, a.width_m / 2 + own_lane_beside_m() AS half_width_m, max(w.k) OVER (PARTITION BY w.drive_id, w.ego_id, w.seg) AS last_k,
-        floor((least(x0_m, x1_m) - strip_m() * greatest(abs(ty0), abs(ty1))) / 4)::BIGINT AS ix0,
-        floor((greatest(x0_m, x1_m) + strip_m() * greatest(abs(ty0), abs(ty1))) / 4)::BIGINT AS ix1,
-        floor((least(y0_m, y1_m) - strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy0,
-        floor((greatest(y0_m, y1_m) + strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy1
+        w.drive_id, w.ego_id, own_lanelet(w.seg) AS lanelet_id, w.k, w.s0_m, w.len_m, w.x0_m, w.y0_m, w.tx0, w.ty0, w.x1_m, w.y1_m, w.tx1, w.ty1,
+        a.width_m / 2 + own_lane_beside_m() AS hw0_m, hw0_m AS hw1_m, CASE WHEN w.k = 0 THEN 0.05 ELSE 0.0 END AS slack0_m,
+        CASE WHEN w.k = max(w.k) OVER (PARTITION BY w.drive_id, w.ego_id, w.seg) THEN 0.05 ELSE 0.0 END AS slack1_m
     FROM _own_way w
     JOIN actor a ON a.drive_id = w.drive_id AND a.actor_id = w.ego_id AND a.width_m IS NOT NULL
     SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = w.drive_id
 ),
-own_column AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM own_segment),
-own_cell AS (SELECT *, unnest(range(iy0, iy1 + 1)) AS iy, cell_key(ix, iy) AS cell FROM own_column)
+segment_box AS (
+    SELECT
+        *,
+        floor((least(x0_m, x1_m) - strip_m() * greatest(abs(ty0), abs(ty1))) / 4)::BIGINT AS ix0,
+        floor((greatest(x0_m, x1_m) + strip_m() * greatest(abs(ty0), abs(ty1))) / 4)::BIGINT AS ix1,
+        floor((least(y0_m, y1_m) - strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy0,
+        floor((greatest(y0_m, y1_m) + strip_m() * greatest(abs(tx0), abs(tx1))) / 4)::BIGINT AS iy1
+    FROM segment
+),
+cell_column AS (SELECT *, unnest(range(ix0, ix1 + 1)) AS ix FROM segment_box),
+grid_cell AS (SELECT *, unnest(range(iy0, iy1 + 1)) AS iy FROM cell_column),
+-- Of the segment's bounding box, the cells whose centre is less than 2.9 m before or behind the strips. (Half a cell's diagonal is 2.8 m.)
+strip_cell AS (
+    SELECT coalesce(m.drive_id, g.drive_id) AS drive_id, coalesce(m.ego_id, g.ego_id) AS ego_id, cell_key(g.ix, g.iy) AS cell, g.* EXCLUDE (drive_id, ego_id)
+    FROM grid_cell g
+    LEFT JOIN chain_lanelet m USING (environment_id, lanelet_id)
+    WHERE along0(4 * ix + 2, 4 * iy + 2, x0_m, y0_m, tx0, ty0) > -2.9 AND along1(4 * ix + 2, 4 * iy + 2, x1_m, y1_m, tx1, ty1) > -2.9
+),
+visited_cell AS (
+    SELECT drive_id, corridor_cell_of(x_m, y_m) AS cell
+    FROM state_dynamics
+    WHERE x_m IS NOT NULL AND y_m IS NOT NULL
+    UNION
+    SELECT
+        s.drive_id,
+        corridor_cell_of(
+            s.x_m + c.l * s.length_m / 2 * cos(s.yaw_rad) - c.w * s.width_m / 2 * sin(s.yaw_rad),
+            s.y_m + c.l * s.length_m / 2 * sin(s.yaw_rad) + c.w * s.width_m / 2 * cos(s.yaw_rad)
+        )
+    FROM step e
+    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.ego_id AND s.t_ns = e.t_ns
+    CROSS JOIN (VALUES (1, 1), (1, -1), (-1, 1), (-1, -1)) AS c(l, w)
+    WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
+)
 SELECT
-    m.drive_id, m.ego_id, m.cell, m.lanelet_id, m.k,
-    g.s0_m, g.len_m, g.x0_m, g.y0_m, g.tx0, g.ty0, g.hw0_m, g.x1_m, g.y1_m, g.tx1, g.ty1, g.hw1_m, g.slack0_m, g.slack1_m
-FROM lanelet_cell m
-JOIN _lane_segment g USING (environment_id, lanelet_id, k)
-UNION ALL
-SELECT
-    o.drive_id, o.ego_id, o.cell, own_lanelet(o.seg), o.k,
-    o.s0_m, o.len_m, o.x0_m, o.y0_m, o.tx0, o.ty0, o.half_width_m, o.x1_m, o.y1_m, o.tx1, o.ty1, o.half_width_m,
-    CASE WHEN o.k = 0 THEN 0.05 ELSE 0.0 END, CASE WHEN o.k = o.last_k THEN 0.05 ELSE 0.0 END
-FROM own_cell o
-SEMI JOIN _visited_cell v ON v.drive_id = o.drive_id AND v.cell = o.cell
+    drive_id, ego_id, cell, lanelet_id, k, s0_m, len_m, x0_m, y0_m, tx0, ty0, hw0_m, x1_m, y1_m, tx1, ty1, hw1_m, slack0_m, slack1_m
+FROM strip_cell
+SEMI JOIN visited_cell USING (drive_id, cell)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SQUARE_SIDE_M: Final = 2.0
 """The size of a square of the grid of `_lane_cell`."""
 BYTES_PER_SQUARE: Final = 224
-"""The bytes of a square in the database: a row of `_lane_cell`, and the rows of `_strip_cell` beside the lane."""
+"""The bytes of a square in the database: a row of `_lane_cell`, with a reserve for the statement that fills it."""
 
 
 def approximate_square_count(lane_points: pa.Table) -> float:
