@@ -24,7 +24,7 @@ def test_a_map_that_an_earlier_session_left_is_not_there_twice() -> None:
             counts.append(
                 [
                     con.execute(f"SELECT count(*) FROM {table}").fetchone()
-                    for table in ("lanelet", "lane_point", "_lane_near")
+                    for table in ("lanelet", "lane_point", "_lane_segment")
                 ]
             )
             con.execute("DELETE FROM verdict; DELETE FROM finding")

@@ -36,15 +36,31 @@ certain_lanelet AS (
         GROUP BY ALL
     )
 ),
+link AS (
+    SELECT environment_id, lanelet_id AS from_id, lanelet_id AS to_id FROM lanelet WHERE drivable
+    UNION ALL
+    SELECT l.environment_id, l.from_id, l.to_id
+    FROM lane_link l
+    JOIN lanelet a ON a.environment_id = l.environment_id AND a.lanelet_id = l.from_id AND a.drivable
+    JOIN lanelet b ON b.environment_id = l.environment_id AND b.lanelet_id = l.to_id AND b.drivable
+),
+-- The drivable lanelets that follow a lanelet of the ego within three links, and that lanelet itself. They show whether two positions can
+-- belong to one path.
+near_lanelet AS (
+    SELECT DISTINCT a.environment_id, a.from_id, c.to_id
+    FROM (FROM link l SEMI JOIN lanelet_candidate o ON o.environment_id = l.environment_id AND o.lanelet_id = l.from_id) a
+    JOIN link b ON b.environment_id = a.environment_id AND b.from_id = a.to_id
+    JOIN link c ON c.environment_id = b.environment_id AND c.from_id = b.to_id
+),
 scored_candidate AS (
     SELECT
         c.*,
-        (b.hops IS NOT NULL)::INTEGER + (a.hops IS NOT NULL)::INTEGER AS n_links,
+        (b.to_id IS NOT NULL)::INTEGER + (a.to_id IS NOT NULL)::INTEGER AS n_links,
         count(*) OVER (PARTITION BY c.drive_id, c.ego_id, s.before_k, c.lanelet_id) AS n_covered
     FROM lanelet_candidate c
     JOIN certain_lanelet s USING (drive_id, ego_id, k)
-    LEFT JOIN _lane_near b ON b.environment_id = c.environment_id AND b.from_id = s.before_id AND b.to_id = c.lanelet_id
-    LEFT JOIN _lane_near a ON a.environment_id = c.environment_id AND a.from_id = c.lanelet_id AND a.to_id = s.after_id
+    LEFT JOIN near_lanelet b ON b.environment_id = c.environment_id AND b.from_id = s.before_id AND b.to_id = c.lanelet_id
+    LEFT JOIN near_lanelet a ON a.environment_id = c.environment_id AND a.from_id = c.lanelet_id AND a.to_id = s.after_id
     WHERE c.n_candidates > 1
 ),
 best_candidate AS (
