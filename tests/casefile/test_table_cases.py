@@ -159,7 +159,7 @@ def test_a_select_that_is_printed_with_another_meaning_has_a_problem(
 def test_a_table_without_cases_is_no_success_of_a_glob(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     lacking = LibraryTable("ego_mode", "log", tmp_path / "ego_mode.sql", "", "", SELECT)
     monkeypatch.setattr(
-        commands, "library_tables", lambda: {"ego_mode": lacking, "ego_aside": library_tables()["ego_aside"]}
+        commands, "library_tables", lambda: {"ego_mode": lacking, "ego_lane": library_tables()["ego_lane"]}
     )
     told: list[str] = []
     assert commands.table_case_test(["ego_*"], told.append) == ExitCode.USAGE
@@ -169,12 +169,12 @@ def test_a_table_without_cases_is_no_success_of_a_glob(monkeypatch: pytest.Monke
 
 def test_commands_tell_each_table() -> None:
     told: list[str] = []
-    assert commands.table_case_test(["ego_aside"], told.append) == ExitCode.OK
-    assert told == ["ok   ego_aside: 2 of 2 cases"]
-    assert commands.table_mutation_test(["ego_aside"], told.append) == ExitCode.OK
-    assert told[1:] == ["ok   ego_aside: 3 of 3 mutants noticed", "1 table: 3 of 3 mutants noticed (100.0%)"]
-    with pytest.raises(UsageError, match="did you mean 'ego_aside'"):
-        commands.table_case_test(["ego_asid"], told.append)
+    assert commands.table_case_test(["ego_lane"], told.append) == ExitCode.OK
+    assert told == ["ok   ego_lane: 13 of 13 cases"]
+    assert commands.table_mutation_test(["ego_lane"], told.append) == ExitCode.OK
+    assert told[1:] == ["ok   ego_lane: 11 of 11 mutants noticed", "1 table: 11 of 11 mutants noticed (100.0%)"]
+    with pytest.raises(UsageError, match="did you mean 'ego_lane'"):
+        commands.table_case_test(["ego_lan"], told.append)
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,12 @@ from drivelint.sql import store
 @pytest.mark.ci
 def test_null_in_a_column_that_is_declared_not_null_is_an_error() -> None:
     select = """
-        SELECT 'd' AS drive_id, 'e' AS ego_id, no::BIGINT AS t_ns, 'a' AS lanelet_id, CASE WHEN no < 2 THEN 'border' END AS lane_type,
-            NULL AS road_type, 0.0 AS off_m, NULL AS with_direction
+        SELECT 'd' AS drive_id, 'e' AS ego_id, no::BIGINT AS t_ns, CASE WHEN no < 2 THEN 'engaged' END AS mode, NULL AS is_on
         FROM range(3) AS r(no)"""
     with store.connect() as con:
-        with pytest.raises(duckdb.Error, match=r"NOT NULL constraint failed: ego_aside\.lane_type"):
-            store.create_from_select(con, "ego_aside", select, {})
-        assert store.create_from_select(con, "ego_aside", f"{select} WHERE no < 2", {}) == 2
+        with pytest.raises(duckdb.Error, match=r"NOT NULL constraint failed: ego_mode\.mode"):
+            store.create_from_select(con, "ego_mode", select, {})
+        assert store.create_from_select(con, "ego_mode", f"{select} WHERE no < 2", {}) == 2
 
 
 @pytest.mark.ci
@@ -28,6 +27,6 @@ def test_types_that_an_interrupted_batch_left_do_not_stop_the_next(left: list[st
         for name in left:
             con.execute(f"CREATE TYPE {name} AS ENUM ('old')")
         for no in range(2):
-            store.recreate_with_enums(con, ["ego_aside"], [f"drive {no}"], ["e"])
-            con.execute(f"INSERT INTO ego_aside VALUES ('drive {no}', 'e', 0, 'a', 'border', NULL, 0.0, NULL)")
+            store.recreate_with_enums(con, ["ego_mode"], [f"drive {no}"], ["e"])
+            con.execute(f"INSERT INTO ego_mode VALUES ('drive {no}', 'e', 0, 'engaged', NULL)")
         assert len(con.execute(made).fetchall()) == 2

@@ -10,7 +10,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- tags = ["excuses"]
--- reads = ["chain", "clock", "data_log", "ego_aside", "ego_condition", "ego_motion", "ego_state", "excursion", "hidden", "lane_beside", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
+-- reads = ["chain", "clock", "data_log", "ego_condition", "ego_lane", "ego_motion", "ego_state", "excursion", "hidden", "lane_beside", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.reverse_mps]
@@ -201,11 +201,11 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
     -- During a short excursion the ego may pass something that the log does not show: then it is not known whether the rule applies.
     (c.t_ns IS NULL OR CASE WHEN p.is_excused OR c.closed_lane THEN false WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL OR x.t_ns IS NOT NULL AND NOT e.in_junction THEN NULL ELSE NOT c.closed_lane END)
         -- Restricted ground is on a level with the lanes: who drives on it against its direction may be on the side of the others.
-        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.t_ns IS NOT NULL AND w.road_type = 'motorway' OR CASE WHEN a.lane_type = 'restricted' THEN CASE WHEN a.with_direction THEN true END ELSE false END) AND (NOT e.in_junction OR a.t_ns IS NOT NULL OR coalesce(j.is_against, false))
+        AND (e.x_m IS NULL OR e.lanelet_id IS NOT NULL OR a.aside_id IS NOT NULL AND w.road_type = 'motorway' OR CASE WHEN a.aside_type = 'restricted' THEN CASE WHEN a.aside_with_direction THEN true END ELSE false END) AND (NOT e.in_junction OR a.aside_id IS NOT NULL OR coalesce(j.is_against, false))
         AND CASE WHEN abs(m.v_long_mps) > $manoeuvring_mps OR w.road_type = 'motorway' OR d.is_against AND d.least_m > $manoeuvring_m THEN true
             -- If the ego drives in the direction of its lane, the kind of road does not matter.
             WHEN abs(m.v_long_mps) <= $manoeuvring_mps AND (w.road_type IS NOT NULL OR e.with_direction AND m.v_long_mps >= -$reverse_mps) AND NOT coalesce(d.is_against AND d.most_m > $manoeuvring_m, false) THEN false END AS applies,
-    CASE WHEN e.lanelet_id IS NULL AND a.lane_type = 'restricted' THEN why('on_restricted_lane')
+    CASE WHEN e.lanelet_id IS NULL AND a.aside_type = 'restricted' THEN why('on_restricted_lane')
         WHEN c.t_ns IS NULL OR p.is_excused OR c.closed_lane THEN NULL
         WHEN p.t_ns IS NOT NULL AND p.is_excused IS NULL THEN why('passing_unknown')
         WHEN x.t_ns IS NOT NULL THEN why('may_pass_unseen', {'within_s': $passing_s})
@@ -213,7 +213,7 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
 FROM ego_state e
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_condition w USING (drive_id, ego_id, t_ns)
-LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
+LEFT JOIN ego_lane a USING (drive_id, ego_id, t_ns)
 LEFT JOIN passing_step p USING (drive_id, ego_id, t_ns)
 LEFT JOIN short_excursion_step x USING (drive_id, ego_id, t_ns)
 LEFT JOIN junction_direction_check j USING (drive_id, ego_id, t_ns)
@@ -221,13 +221,13 @@ LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
 LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,
-    CASE WHEN m.v_long_mps IS NOT NULL AND coalesce(e.lanelet_id, a.lanelet_id) IS NOT NULL THEN why(
-        CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.with_direction) THEN 'with_lane' ELSE 'against_lane' END,
-        {'along_mps': m.v_long_mps, 'lanelet_id': coalesce(e.lanelet_id, a.lanelet_id)}
+SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.aside_with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,
+    CASE WHEN m.v_long_mps IS NOT NULL AND coalesce(e.lanelet_id, a.aside_id) IS NOT NULL THEN why(
+        CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.aside_with_direction) THEN 'with_lane' ELSE 'against_lane' END,
+        {'along_mps': m.v_long_mps, 'lanelet_id': coalesce(e.lanelet_id, a.aside_id)}
     ) END AS reason
 FROM ego_state e
 JOIN data_log g USING (drive_id)
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
-LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
-LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = coalesce(e.lanelet_id, a.lanelet_id)
+LEFT JOIN ego_lane a USING (drive_id, ego_id, t_ns)
+LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = coalesce(e.lanelet_id, a.aside_id)

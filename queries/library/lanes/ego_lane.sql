@@ -1,6 +1,6 @@
 -- One drivable lanelet per ego step. If several lanelets overlap (in junctions), the lanelet that links the last certain lanelet to the
 -- next one is taken. Of several such lanelets, it is the one that covers most steps between the two certain lanelets, then the one with the
--- best heading.
+-- best heading. If the ego is on no drivable lane, it may be on a lane beside one (aside_id).
 -- lifetime: part
 CREATE TABLE ego_lane (
     drive_id VARCHAR NOT NULL,        -- the drive
@@ -11,7 +11,12 @@ CREATE TABLE ego_lane (
     d_m DOUBLE,                       -- offset from the lanelet's centre line, left of travel positive {position}
     half_width_m DOUBLE,              -- half the lanelet's width there
     with_direction BOOLEAN,           -- the heading is within 90 degrees of the lane's direction {heading}
-    with_traffic BOOLEAN              -- with_direction, or the lane is driven in both directions {position}
+    with_traffic BOOLEAN,             -- with_direction, or the lane is driven in both directions {position}
+    aside_id VARCHAR,                 -- if the ego is on no drivable lane: the nearest lanelet under it that is a shoulder, lay-by, border, parking lane, restricted lane or cycle lane, which is part of the carriageway or kept free beside it; NULL: none {position}
+    aside_type VARCHAR,               -- [lane_type] of that lanelet, see lanelet
+    aside_road_type VARCHAR,          -- [road_type] of that lanelet, see lanelet
+    aside_off_m DOUBLE,               -- distance of the ego from that lanelet's centre line {position}
+    aside_with_direction BOOLEAN      -- the heading is within 90 degrees of that lanelet's direction {heading}
 );
 
 INSERT INTO ego_lane BY NAME
@@ -69,11 +74,23 @@ best_candidate AS (
         min({'n_links': -n_links, 'n_covered': -n_covered, 'heading_off_rad': heading_off_rad, 'off_m': abs(d_m), 'id': lanelet_id, 's_m': s_m}) AS best
     FROM scored_candidate
     GROUP BY ALL
+),
+lane_aside AS (
+    SELECT
+        c.drive_id, c.ego_id, c.t_ns,
+        min({'off_m': abs(o.d_m), 'id': o.lanelet_id, 'lane_type': n.lane_type, 'road_type': n.road_type, 'with_direction': abs(o.heading_diff_rad) < pi() / 2}) AS nearest
+    FROM lanelet_candidate c
+    JOIN lane_occupancy o ON o.drive_id = c.drive_id AND o.actor_id = c.ego_id AND o.t_ns = c.t_ns
+    JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = o.lanelet_id
+    WHERE c.n_candidates = 0 AND n.lane_type IN ('shoulder', 'stop', 'border', 'parking', 'restricted', 'biking')
+    GROUP BY c.drive_id, c.ego_id, c.t_ns
 )
 SELECT
     c.drive_id, c.ego_id, c.t_ns, c.lanelet_id, c.s_m, c.d_m, c.half_width_m, c.heading_off_rad < pi() / 2 AS with_direction,
-    n.bidirectional OR c.heading_off_rad < pi() / 2 AS with_traffic
+    n.bidirectional OR c.heading_off_rad < pi() / 2 AS with_traffic,
+    a.nearest.id AS aside_id, a.nearest.lane_type AS aside_type, a.nearest.road_type AS aside_road_type, a.nearest.off_m AS aside_off_m, a.nearest.with_direction AS aside_with_direction
 FROM lanelet_candidate c
 LEFT JOIN lanelet n ON n.environment_id = c.environment_id AND n.lanelet_id = c.lanelet_id
 LEFT JOIN best_candidate b ON b.drive_id = c.drive_id AND b.ego_id = c.ego_id AND b.t_ns = c.t_ns
+LEFT JOIN lane_aside a ON a.drive_id = c.drive_id AND a.ego_id = c.ego_id AND a.t_ns = c.t_ns
 WHERE c.n_candidates <= 1 OR (c.lanelet_id = b.best.id AND c.s_m = b.best.s_m)

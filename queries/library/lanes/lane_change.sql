@@ -30,7 +30,7 @@ CREATE TABLE lane_change (
 INSERT INTO lane_change BY NAME
 WITH any_crossing AS (FROM lane_crossing),
 unfinished_excursion AS (FROM excursion WHERE t_back_ns IS NULL AND max_out_m >= 0.5),
-step_on_restricted_ground AS (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction),
+step_on_restricted_ground AS (FROM ego_lane WHERE aside_type = 'restricted' AND aside_with_direction),
 -- occasion: any_crossing, unfinished_excursion, step_on_restricted_ground
 chain_span AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns, max({'t_ns': t_ns, 'id': lanelet_id}).id AS last_id
@@ -219,8 +219,8 @@ width_ratio AS (
 -- change is known.
 restricted_step AS (
     SELECT
-        st.drive_id, st.ego_id, st.k, st.t_ns, st.seg, e.lanelet_id, a.lanelet_id AS aside_id, e.speed_mps, x.d_m,
-        sum((a.lanelet_id IS NULL)::INTEGER) OVER (PARTITION BY st.drive_id, st.ego_id ORDER BY st.k) AS run_no
+        st.drive_id, st.ego_id, st.k, st.t_ns, st.seg, e.lanelet_id, a.aside_id, e.speed_mps, x.d_m,
+        sum((a.aside_id IS NULL)::INTEGER) OVER (PARTITION BY st.drive_id, st.ego_id ORDER BY st.k) AS run_no
     FROM step st
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN step_on_restricted_ground a USING (drive_id, ego_id, t_ns)

@@ -30,7 +30,7 @@ WITH ego_step AS (
         g.environment_id, v.handedness, v.handedness_source <> 'default' AS is_handedness_known, n.lanelet_id, n.road_type,
         least(greatest(x.s_m - c.s_start_m, 0.0), c.length_m - 1e-6) AS lane_s_m,
         coalesce(n.junction_id IS NOT NULL, false) AS in_junction,
-        e.x_m IS NOT NULL AND e.lanelet_id IS NULL AS is_off_lanes, a.t_ns IS NOT NULL AS is_aside, y.road_id IS NOT NULL AND y.road_id = n.road_id AS is_on_own_road, e.yaw_rad - x.heading_diff_rad AS corridor_rad,
+        e.x_m IS NOT NULL AND e.lanelet_id IS NULL AS is_off_lanes, a.aside_id IS NOT NULL AS is_aside, y.road_id IS NOT NULL AND y.road_id = n.road_id AS is_on_own_road, e.yaw_rad - x.heading_diff_rad AS corridor_rad,
         -- Index of the running lane, counted to the left from the first one.
         coalesce(sum(l.side) OVER (w ROWS UNBOUNDED PRECEDING), 0) AS lane_index
     FROM ego_state e
@@ -42,8 +42,8 @@ WITH ego_step AS (
         AND c.s_start_m <= x.s_m AND x.s_m < c.s_start_m + c.length_m
     LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = c.lanelet_id
     LEFT JOIN lane_crossing l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.t_ns = e.t_ns
-    LEFT JOIN ego_aside a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.t_ns = e.t_ns
-    LEFT JOIN lanelet y ON y.environment_id = g.environment_id AND y.lanelet_id = a.lanelet_id
+    LEFT JOIN ego_lane a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.t_ns = e.t_ns
+    LEFT JOIN lanelet y ON y.environment_id = g.environment_id AND y.lanelet_id = a.aside_id
     WINDOW w AS (PARTITION BY e.drive_id, e.ego_id ORDER BY st.k)
 ),
 step_context AS (

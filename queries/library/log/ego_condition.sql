@@ -42,7 +42,7 @@ cross_section AS (
 ),
 step_road AS (
     SELECT
-        st.drive_id, st.ego_id, st.t_ns, coalesce(g.road_type, e.road_type, a.road_type) AS road_type, e.limit_mps,
+        st.drive_id, st.ego_id, st.t_ns, coalesce(g.road_type, e.road_type, a.aside_road_type) AS road_type, e.limit_mps,
         CASE WHEN n.junction_id IS NULL THEN r.directions_touch END AS directions_touch,
         CASE WHEN n.junction_id IS NULL THEN r.has_gap END AS has_gap,
         CASE WHEN n.junction_id IS NULL THEN r.has_both_ways END AS has_both_ways,
@@ -52,7 +52,7 @@ step_road AS (
     JOIN data_log l ON l.drive_id = st.drive_id
     LEFT JOIN given_condition g ON g.drive_id = st.drive_id
     LEFT JOIN ego_state e ON e.drive_id = st.drive_id AND e.ego_id = st.ego_id AND e.t_ns = st.t_ns
-    LEFT JOIN ego_aside a ON a.drive_id = st.drive_id AND a.ego_id = st.ego_id AND a.t_ns = st.t_ns
+    LEFT JOIN ego_lane a ON a.drive_id = st.drive_id AND a.ego_id = st.ego_id AND a.t_ns = st.t_ns
     LEFT JOIN lanelet n ON n.environment_id = l.environment_id AND n.lanelet_id = e.lanelet_id
     LEFT JOIN cross_section r ON r.environment_id = n.environment_id AND r.road_id = n.road_id AND r.section = n.section
 ),

@@ -36,10 +36,9 @@ WITH opposing_step AS (
 two_way_lane AS (SELECT DISTINCT environment_id, lanelet_id FROM lane_beside WHERE drivable AND against),
 ego_place AS (
     SELECT
-        e.drive_id, e.ego_id, e.t_ns, coalesce(e.lanelet_id, a.lanelet_id) AS lanelet_id, coalesce(e.with_traffic, a.with_direction) AS with_traffic,
-        coalesce(abs(e.d_m), a.off_m) AS off_m
+        e.drive_id, e.ego_id, e.t_ns, coalesce(e.lanelet_id, e.aside_id) AS lanelet_id, coalesce(e.with_traffic, e.aside_with_direction) AS with_traffic,
+        coalesce(abs(e.d_m), e.aside_off_m) AS off_m
     FROM ego_lane e
-    LEFT JOIN ego_aside a USING (drive_id, ego_id, t_ns)
 ),
 step_count AS (
     SELECT
