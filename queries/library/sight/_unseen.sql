@@ -16,9 +16,14 @@ CREATE TABLE _unseen (
 );
 
 INSERT INTO _unseen BY NAME
-WITH track AS (
-    SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
+WITH track_edge AS (
+    SELECT e.drive_id, e.ego_id, e.object_id, v.lost, v.t_ns, c.max_gap_ns
+    FROM (SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL) e
+    JOIN clock c USING (drive_id, ego_id)
+    CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
+    WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
 ),
+-- occasion: track_edge
 -- The ends of the ego's corridor, and the ends of the map ahead of the ego and behind it.
 map_end AS (
     SELECT
@@ -44,17 +49,15 @@ doubted_place AS (
 -- Tracks that end or begin at an end of the map: along the actor's own lane, the next sample (or the one before) lies beyond the map, and
 -- no adjacent lane continues.
 track_at_map_end AS (
-    SELECT e.drive_id, e.ego_id, e.object_id, v.lost
-    FROM track e
-    JOIN clock c USING (drive_id, ego_id)
+    SELECT e.drive_id, e.ego_id, e.object_id, e.lost
+    FROM track_edge e
     JOIN data_log g USING (drive_id)
-    CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
-    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id AND s.t_ns = v.t_ns
-    JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.object_id AND o.t_ns = v.t_ns AND o.drivable
+    JOIN state_dynamics s ON s.drive_id = e.drive_id AND s.actor_id = e.object_id AND s.t_ns = e.t_ns
+    JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.object_id AND o.t_ns = e.t_ns AND o.drivable
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
     JOIN lane_next w ON w.environment_id = n.environment_id AND w.lanelet_id = n.lanelet_id
-    CROSS JOIN LATERAL (SELECT (abs(o.heading_diff_rad) < pi() / 2) = v.lost AS is_onwards) x
-    CROSS JOIN LATERAL (SELECT s.length_m / 2 + s.speed_mps * c.max_gap_ns / 1e9 AS m) r
+    CROSS JOIN LATERAL (SELECT (abs(o.heading_diff_rad) < pi() / 2) = e.lost AS is_onwards) x
+    CROSS JOIN LATERAL (SELECT s.length_m / 2 + s.speed_mps * e.max_gap_ns / 1e9 AS m) r
     GROUP BY ALL
     HAVING bool_and(coalesce(
         CASE WHEN x.is_onwards THEN w.map_ends AND n.length_m - o.s_m <= r.m ELSE w.map_begins AND o.s_m <= r.m END, false
@@ -62,27 +65,24 @@ track_at_map_end AS (
 ),
 sighting AS (
     SELECT
-        e.drive_id, e.ego_id, e.object_id, v.lost, p.t_ns, s.chain_id, credible.distance_m, p.speed_mps, s.speed_mps AS ego_speed_mps, g.sensor_range_m,
+        e.drive_id, e.ego_id, e.object_id, e.lost, p.t_ns, s.chain_id, credible.distance_m, p.speed_mps, s.speed_mps AS ego_speed_mps, g.sensor_range_m,
         credible.front_s_m, credible.rear_s_m, s.rear_s_m AS ego_rear_m, p.s_m > s.s_m AS is_ahead, abs(p.heading_diff_rad) > pi() / 2 AS is_towards,
-        abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * c.max_gap_ns / 1e9 AS sample_way_m, m.end_m, m.begin_m,
+        abs(p.heading_diff_rad) > 2 * pi() / 3 AND p.speed_mps > standing_mps() AS oncoming, p.speed_mps * e.max_gap_ns / 1e9 AS sample_way_m, m.end_m, m.begin_m,
         r.road, r.offset_m, d.object_id IS NOT NULL AND credible.is_placed AS is_off_map
-    FROM track e
-    JOIN clock c USING (drive_id, ego_id)
+    FROM track_edge e
     JOIN data_log g USING (drive_id)
-    CROSS JOIN LATERAL (VALUES (true, e.t_last_ns), (false, e.t_first_ns)) AS v(lost, t_ns)
-    JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = v.t_ns
-    JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = v.t_ns
+    JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id AND p.t_ns = e.t_ns
+    JOIN ego_state s ON s.drive_id = e.drive_id AND s.ego_id = e.ego_id AND s.t_ns = e.t_ns
     LEFT JOIN map_end m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.chain_id = s.chain_id
     LEFT JOIN _ego_road r ON r.drive_id = s.drive_id AND r.ego_id = s.ego_id AND r.chain_id = s.chain_id
-    LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = v.lost
-    LEFT JOIN doubted_place a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.actor_id = e.object_id AND a.t_ns = v.t_ns
-    LEFT JOIN doubted_place b ON b.drive_id = e.drive_id AND b.ego_id = e.ego_id AND b.actor_id = e.ego_id AND b.t_ns = v.t_ns
+    LEFT JOIN track_at_map_end d ON d.drive_id = e.drive_id AND d.ego_id = e.ego_id AND d.object_id = e.object_id AND d.lost = e.lost
+    LEFT JOIN doubted_place a ON a.drive_id = e.drive_id AND a.ego_id = e.ego_id AND a.actor_id = e.object_id AND a.t_ns = e.t_ns
+    LEFT JOIN doubted_place b ON b.drive_id = e.drive_id AND b.ego_id = e.ego_id AND b.actor_id = e.ego_id AND b.t_ns = e.t_ns
     CROSS JOIN LATERAL (SELECT a.t_ns IS NULL AND b.t_ns IS NULL AS is_placed) q
     CROSS JOIN LATERAL (
         SELECT q.is_placed, CASE WHEN q.is_placed THEN p.distance_m END AS distance_m, CASE WHEN q.is_placed THEN p.front_s_m END AS front_s_m, CASE WHEN q.is_placed THEN p.rear_s_m END AS rear_s_m
     ) credible
-    ANTI JOIN _track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = v.lost
-    WHERE CASE WHEN v.lost THEN v.t_ns + c.max_gap_ns < c.t_end_ns ELSE v.t_ns > c.t_start_ns + c.max_gap_ns END
+    ANTI JOIN _track_off_level l ON l.drive_id = e.drive_id AND l.ego_id = e.ego_id AND l.object_id = e.object_id AND l.lost = e.lost
 ),
 judged_sighting AS (
     SELECT
