@@ -27,11 +27,7 @@ from drivelint.sql import declarations
 OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "vy_mps"}
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
-TABLES = [
-    table
-    for table in declarations.column_comments()
-    if table not in ("drive", "rule", "_corridor_cell")
-]
+TABLES = [table for table in declarations.column_comments() if table not in ("drive", "rule", "_corridor_cell")]
 FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 

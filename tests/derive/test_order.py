@@ -77,9 +77,7 @@ def test_each_runs_after_what_it_reads(
 def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, begins_late: bool
 ) -> None:
-    only(
-        monkeypatch, {"lost_time": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())}
-    )
+    only(monkeypatch, {"lost_time": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
     fill = derive._fill_table
 
     def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation, *types: Any, **old: Any) -> int:
@@ -90,9 +88,7 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     monkeypatch.setattr(derive, "_fill_table", late)
     with pytest.raises(DriveLintError, match=r"^queries/library/log/step\.sql: .*'x'"):
         derive.derive(con, ["step", "lost_time"], are_map_tables=False, always_needed_tables=())
-    assert con.execute("SELECT (SELECT count(*) FROM lost_time), (SELECT count(*) FROM step)").fetchall() == [
-        (0, 0)
-    ]
+    assert con.execute("SELECT (SELECT count(*) FROM lost_time), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
 
 
 def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,7 +96,12 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
     con.execute("SET temp_directory = ''")
     only(
         monkeypatch,
-        {"lost_time": ("SELECT 'd' AS drive_id, range AS t_from_ns, range AS t_to_ns FROM range(20000000) ORDER BY hash(range)", set())},
+        {
+            "lost_time": (
+                "SELECT 'd' AS drive_id, range AS t_from_ns, range AS t_to_ns FROM range(20000000) ORDER BY hash(range)",
+                set(),
+            )
+        },
     )
     with pytest.raises(duckdb.OutOfMemoryException):
         derive.derive(con, ["lost_time"], are_map_tables=False, always_needed_tables=())
