@@ -18,7 +18,7 @@ from tests.shared_data import ROOT
 from tests.together import chunk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Generator, Sequence
 
     from drivelint.result.model import Result
 
@@ -80,7 +80,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> BySharing | 
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_collection() -> Iterator[None]:
+def pytest_collection() -> Generator[None, object, object]:
     """Collect without looking for garbage: what is collected stays to the end, and to look through it takes a third of the time."""
     gc.disable()
     try:
