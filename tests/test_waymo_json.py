@@ -35,6 +35,7 @@ def place(points: Any, step: int) -> tuple[float, float]:
     )
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize("name", FILES)
 def test_every_valid_state_is_there_and_no_other(name: str, tmp_path: Path) -> None:
     told, trace = content(name)["objects"], read(written(name, tmp_path))

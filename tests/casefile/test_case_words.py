@@ -30,6 +30,7 @@ def test_a_case_is_refused_by_rules_test(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize(
     "value", ["hazards", "[off, hazards]", "{else: off, 0.5: hazards}", "{0..0.5: hazards, else: null}"]
 )

@@ -173,6 +173,7 @@ def beyond_the_checker(tmp_path: Path, sql: str) -> Rule:
     return msgspec.structs.replace(rule, sections={"condition": sql})
 
 
+@pytest.mark.sample(3, ci=4)
 @pytest.mark.parametrize(
     ("source", "message"),
     [
@@ -197,6 +198,7 @@ def test_the_database_refuses_what_the_checker_would_have_let_pass(tmp_path: Pat
     assert message in verdicts[0]["reason"]
 
 
+@pytest.mark.sample(4, ci=5)
 @pytest.mark.parametrize(
     "statement",
     [

@@ -114,6 +114,7 @@ def judged(value: float, *words: dict[str, Any], rule_id: str = CHANGE) -> WhatI
         return what_if(con, CATALOGUE[rule_id], "most_s" if rule_id == CHANGE else "margin_s", value)
 
 
+@pytest.mark.sample(6, ci=6)
 @pytest.mark.parametrize(
     ("said", "value", "becomes"),
     [

@@ -84,6 +84,7 @@ def test_a_map_that_was_moved_to_the_log_is_moved_back() -> None:
     assert placed(moved, (345.0, -43.0)) == [pytest.approx(placed(own, (45.0, 7.0))[0], abs=1e-12)]
 
 
+@pytest.mark.sample(8, ci=8)
 @pytest.mark.parametrize(
     ("reference", "place", "why"),
     [

@@ -119,6 +119,7 @@ def test_a_cte_without_which_there_may_be_rows_is_no_occasion(sql: str) -> None:
 OF_DERIVATIONS = [step for step in derivations().values() if step.occasion]
 
 
+@pytest.mark.sample(6, ci=6)
 @pytest.mark.parametrize("step", OF_DERIVATIONS, ids=lambda step: step.table)
 def test_the_occasion_of_a_derivation_is_a_query(step: Derivation) -> None:
     """A statement of its own, which stops before the derivation's does."""

@@ -204,6 +204,7 @@ def test_broken_files_are_named_in_one_line(tmp_path: Path, file: str) -> None:
         assert "\n" not in str(error.value)
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("file", ["annotations.feather", "city_SE3_egovehicle.feather"])
 def test_a_flipped_byte_is_refused_or_unseen(tmp_path: Path, file: str) -> None:
     """Arrow's own files have no checksums; offsets of texts that lead out of their buffer ended the process."""

@@ -80,6 +80,7 @@ def lane_with_tags(**tags: str) -> tuple[tuple[str, bool, bool] | None, MapTable
     return lanes(environment).get(name), environment
 
 
+@pytest.mark.sample(12, ci=11)
 @pytest.mark.parametrize(
     ("tags", "expected"),
     [

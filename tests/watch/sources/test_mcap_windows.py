@@ -37,6 +37,7 @@ def test_fixtures(tmp_path: Path, name: str) -> None:
     assert_windows_are_spans(McapSource(path, idle_s=0.0), tmp_path)
 
 
+@pytest.mark.sample(1, ci=2)
 @pytest.mark.parametrize("name", REFERENCES)
 def test_reference_logs(tmp_path: Path, name: str) -> None:
     assert_windows_are_spans(McapSource(shared(f"osi/{name}.mcap"), idle_s=0.0), tmp_path)

@@ -93,6 +93,7 @@ def test_what_is_no_message_ends_it(tmp_path: Path) -> None:
     assert "nothing after that is read" in source.notes()[0]
 
 
+@pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize("name", ["acc-test", "alks_cut-in", "highway_merge", "pedestrian"])
 def test_windows_of_reference_files(tmp_path: Path, name: str) -> None:
     assert_windows_are_spans(osi.open_file(shared(f"osi/{name}.osi"), idle_s=0.0), tmp_path, ego="all")
@@ -264,6 +265,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_standard_input_of_a_watch_that_is_ended(tmp_path: Path, number: signal.Signals) -> None:
     """Its recording can be read, whatever ended it."""
