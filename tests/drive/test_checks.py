@@ -277,7 +277,9 @@ def test_sizes_that_vary_are_reported(tmp_path: Path) -> None:
 def test_a_class_that_changes_is_that_of_nearly_all_samples(
     tmp_path: Path, classes: list[str], known: str | None
 ) -> None:
-    words = '\n[class]\ncolumn = "kind"\n[class.values]\n' + "".join(f'{name} = "{name}"\n' for name in {"car", *classes})
+    words = '\n[class]\ncolumn = "kind"\n[class.values]\n' + "".join(
+        f'{name} = "{name}"\n' for name in {"car", *classes}
+    )
     lines = ["t,id,x,y,yaw,vx,vy,kind"]
     for i, kind in enumerate(classes):
         lines += [f"{i / 10},a,{i},0,0,10,0,car", f"{i / 10},b,{i},6,0,10,0,{kind}"]

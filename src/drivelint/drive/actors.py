@@ -113,7 +113,9 @@ def _classes(states: States) -> tuple[list[str | None], list[QualityFinding]]:
     if not len(changing):
         return classes, []
     ids = [states.ids[number] for number in changing]
-    message = f"the class changes over the log ({name_list(ids)}): if no class has nine tenths of the samples, it is unknown"
+    message = (
+        f"the class changes over the log ({name_list(ids)}): if no class has nine tenths of the samples, it is unknown"
+    )
     return classes, [QualityFinding.of_actors("class_varies", "warning", message, ids)]
 
 
