@@ -69,6 +69,26 @@ def dropped(drive: Drive, actor: str | None, span: Span) -> Drive:
     return changed(less, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
 
 
+def renamed_actor(drive: Drive, actor: str, t_s: float) -> Drive:
+    """Give the actor another id from this time on, as a tracker does that loses an actor and finds it again."""
+    new = f"{actor}b"
+
+    def under_new_id(rows: pa.Table, hit: NDArray[np.bool_]) -> pa.Table:
+        return _with(rows, "actor_id", hit, pa.array([new] * rows.num_rows, rows.schema.field("actor_id").type))
+
+    def change(states: pa.Table) -> pa.Table:
+        late = _hit(states, actor, (t_s, EVER[1]))
+        return under_new_id(states, late).sort_by([("actor_id", "ascending"), ("t_ns", "ascending")])
+
+    def repeat(actors: pa.Table) -> pa.Table:
+        own = actors.filter(pc.equal(actors["actor_id"], actor))
+        return pa.concat_tables([actors, under_new_id(own, np.ones(own.num_rows, bool))])
+
+    both = changed(changed(drive, "actor_state", change), "actor", repeat)
+    left = pc.unique(both.trace.tables["actor_state"]["actor_id"])
+    return changed(both, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
+
+
 def moved(drive: Drive, actor: str, span: Span, by_m: float) -> Drive:
     """Move the actor to its left."""
 
@@ -210,6 +230,11 @@ def without(drive: Drive, table: str, columns: tuple[str, ...], actor: str | Non
 def empty(rows: pa.Table) -> pa.Table:
     """Return the table without its rows."""
     return rows.slice(0, 0)
+
+
+def of(column: str, value: str) -> Callable[[pa.Table], pa.Table]:
+    """Return a change that keeps only the rows with this value."""
+    return lambda rows: rows.filter(pc.equal(rows[column], value))
 
 
 def unsaid(*columns: str) -> Callable[[pa.Table], pa.Table]:

@@ -22,7 +22,16 @@ if TYPE_CHECKING:
     from tests.scenes import Row
 
 SIZE, SPEED = ("length_m", "width_m"), ("vx_mps", "vy_mps")
+ABOUT_S = 10.0
+"""Only what is said of this long before and after what was planted counts: somebody else is not known at other times."""
+ANY_TIME = {
+    "criticality.pet": "what is not known of an actor without a place stands at its first step",
+    "ukhc.r168.drop-back": "one row stands for all the time in which it is not known who is ahead, from its first step",
+}
+"""Rules whose unknown rows may begin earlier, and why."""
 MAPS: dict[str, dict[str, Any]] = {
+    "markings of the left": {"lane_boundary": blinding.of("side", "right")},
+    "markings of the right": {"lane_boundary": blinding.of("side", "left")},
     "markings": {"lane_boundary": blinding.unsaid("marking")},
     "limits and types": {"speed_limit": blinding.empty, "lanelet": blinding.unsaid("road_type")},
     "handedness": {"environment": blinding.guessed},
@@ -84,6 +93,8 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
     if others:
         yield "place of the others", each(blinding.nulled, long)
         yield "place of the others for ever", each(blinding.nulled, EVER)
+        yield "a second of the others", each(blinding.dropped, (span[0] - 0.5, span[0] + 0.5))
+        yield "id of the others", each(blinding.renamed_actor, span[0] - 0.05)
         yield "heading of the others", lacking("actor_state", ("yaw_rad",))
         yield "speed of the others", lacking("actor_state", SPEED)
         yield "size of the others", lacking("actor", SIZE)
@@ -102,25 +113,34 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
     yield "events", blinding.changed(drive, "declared_event", blinding.empty)
     yield "conditions", blinding.changed(drive, "drive_condition", blinding.empty)
     yield "map", blinding.on(drive, None)
+    road = drive.environment
+    assert road is not None
     for what, changes in MAPS.items():
-        road = drive.environment
-        assert road is not None
         yield what, blinding.on(drive, blinding.remade(road, f"{road.environment_id} {what}", **changes))
+
+
+def is_about(row: Row, span: Span) -> bool:
+    """Return whether a verdict is about the time of what was planted, or about all of the drive."""
+    if row["rule_id"] in ANY_TIME or row["t_start_ns"] is None or row["t_end_ns"] is None:
+        return True
+    return bool(row["t_start_ns"] / 1e9 <= span[1] + ABOUT_S and row["t_end_ns"] / 1e9 >= span[0] - ABOUT_S)
 
 
 @cache
 def said(pack: str, chapter: str) -> dict[str, set[str]]:
     """Return the verdicts on what is planted in a chapter by a pack's rules, by rule and what was taken away."""
     drives: list[Drive] = []
+    spans: dict[str, Span] = {}
     mine = [p for p in STORIES if (p.pack, p.chapter) == (pack, chapter)]
     for planted in mine:
         row, span = found(planted)
+        spans[planted.rule] = span
         whole = on_the_road(planted.drives()[planted.rule]())
         part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
         drives += [blinding.renamed(one, f"{planted.rule}/{what}") for what, one in blinded(part, row, span)]
     verdicts: dict[str, set[str]] = {drive.trace.drive_id: set() for drive in drives}
     for row in judged_by(drives, rules=[p.rule for p in mine]):
-        if row["drive_id"].startswith(f"{row['rule_id']}/"):
+        if row["drive_id"].startswith(f"{row['rule_id']}/") and is_about(row, spans[row["rule_id"]]):
             verdicts[row["drive_id"]].add(row["verdict"])
     return verdicts
 
