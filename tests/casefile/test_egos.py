@@ -13,7 +13,7 @@ from drivelint.sql import declarations
 from drivelint.sql.library import library_tables
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Container, Sequence
 
     from drivelint.casefile.merged_cases import Scene
     from drivelint.casefile.scene import Row
@@ -41,7 +41,7 @@ def is_left_out(table: str, scene: Scene) -> bool:
     return table in ABOUT_ALL_ACTORS and any(row.get("actor_id") in egos for row in tracks)
 
 
-def of_ego(row: Row, egos: Iterable[str]) -> bool:
+def of_ego(row: Row, egos: Container[object]) -> bool:
     return "ego_id" in row or row.get("actor_id") in egos
 
 
