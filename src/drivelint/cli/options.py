@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import typer
 
@@ -52,8 +52,11 @@ def declared_info(declared: DeclaredOption) -> Any:
     )
 
 
+_OPTIONS_OF_CHECK: Final = {each.name: each for each in declared_options(CheckCommandArguments)}
+
+
 def _option_of_check(name: str) -> Any:
-    return next(declared_info(each) for each in declared_options(CheckCommandArguments) if each.name == name)
+    return declared_info(_OPTIONS_OF_CHECK[name])
 
 
 MinJudged = Annotated[float | None, _option_of_check("min_judged")]
@@ -97,9 +100,13 @@ class DeclaredCommand:
                 parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
                 continue
             for declared in declared_options(self._groups[name]):
-                annotation = Annotated[declared.type.command_line_type, declared_info(declared)]
                 parameters.append(
-                    Parameter(declared.field, Parameter.KEYWORD_ONLY, default=declared.default, annotation=annotation)
+                    Parameter(
+                        declared.field,
+                        Parameter.KEYWORD_ONLY,
+                        default=declared.default,
+                        annotation=Annotated[declared.type.command_line_type, declared_info(declared)],
+                    )
                 )
         return Signature(parameters)
 

@@ -9,7 +9,6 @@ is `--map-dir DIR` on the command line, the keyword `map_dir` in Python, and the
 from __future__ import annotations
 
 from dataclasses import fields
-from functools import cache
 from inspect import Parameter, Signature, get_annotations
 from typing import (
     TYPE_CHECKING,
@@ -120,7 +119,6 @@ class DeclaredOption(NamedTuple):
         return converted if self.option.parse is None else self.option.parse(converted)
 
 
-@cache
 def declared_options(arguments: type[Arguments]) -> tuple[DeclaredOption, ...]:
     """Return the options that a class of arguments declares, the positional ones first."""
     options: list[DeclaredOption] = []
