@@ -99,15 +99,15 @@ class DeclaredCommand:
             if name not in self._groups:
                 parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
                 continue
-            for declared in declared_options(self._groups[name]):
-                parameters.append(
-                    Parameter(
-                        declared.field,
-                        Parameter.KEYWORD_ONLY,
-                        default=declared.default,
-                        annotation=Annotated[declared.type.command_line_type, declared_info(declared)],
-                    )
+            parameters += [
+                Parameter(
+                    declared.field,
+                    Parameter.KEYWORD_ONLY,
+                    default=declared.default,
+                    annotation=Annotated[declared.type.command_line_type, declared_info(declared)],
                 )
+                for declared in declared_options(self._groups[name])
+            ]
         return Signature(parameters)
 
     @property
