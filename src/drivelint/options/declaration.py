@@ -10,18 +10,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from inspect import Parameter, Signature, get_annotations
-from typing import (
-    TYPE_CHECKING,
-    Annotated,
-    Any,
-    ClassVar,
-    Literal,
-    NamedTuple,
-    TypeVar,
-    dataclass_transform,
-    get_args,
-    get_origin,
-)
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar, dataclass_transform, get_args, get_origin
 
 from drivelint.options.types import OPTION_TYPES, OptionType, require_one_of
 
@@ -53,47 +42,8 @@ class Option(NamedTuple):
     place_after: str = ""
 
 
-class Field(NamedTuple):
-    """A field of a class of arguments. `default`: `Parameter.empty` if it must be given."""
-
-    name: str
-    annotation: Any
-    default: Any
-    is_positional: bool
-
-    @property
-    def type(self) -> OptionType:
-        """Return the type of the values."""
-        if get_origin(self.annotation) is not Annotated:
-            return OPTION_TYPES[self.annotation]
-        kind, option = get_args(self.annotation)
-        type_of_option: OptionType | None = option.type
-        return type_of_option or OPTION_TYPES[kind]
-
-
-@dataclass_transform(kw_only_default=True, frozen_default=True)
-class Arguments:
-    """The base of classes of arguments. To type checkers they are dataclasses, which take longer to define than some commands run."""
-
-    fields_by_name: ClassVar[dict[str, Field]] = {}
-
-    def __init_subclass__(cls, *, kw_only: bool = True) -> None:
-        """Find the fields of the class; those of its last base come first, and a field that is declared again keeps its place."""
-        cls.fields_by_name = {}
-        for each in reversed(cls.__bases__):
-            cls.fields_by_name |= getattr(each, "fields_by_name", {})
-        for name, annotation in get_annotations(cls).items():
-            default = vars(cls).get(name, Parameter.empty)
-            cls.fields_by_name[name] = Field(name, annotation, default, is_positional=not kw_only)
-
-    def __init__(self, *positional: Any, **keywords: Any) -> None:
-        names = [each.name for each in self.fields_by_name.values() if each.is_positional]
-        defaults = {each.name: each.default for each in self.fields_by_name.values()}
-        vars(self).update(defaults | dict(zip(names, positional, strict=False)) | keywords)
-
-
 class DeclaredOption(NamedTuple):
-    """An option of a class of arguments: its name in Python, its type, and its declaration."""
+    """A field of a class of arguments. `default`: `Parameter.empty` if it must be given. `option`: without help if only Python has it."""
 
     name: str
     type: OptionType
@@ -119,15 +69,37 @@ class DeclaredOption(NamedTuple):
         return converted if self.option.parse is None else self.option.parse(converted)
 
 
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+class Arguments:
+    """The base of classes of arguments. To type checkers they are dataclasses, which take longer to define than some commands run."""
+
+    fields_by_name: ClassVar[dict[str, DeclaredOption]] = {}
+
+    def __init_subclass__(cls, *, kw_only: bool = True) -> None:
+        """Find the fields of the class; those of its last base come first, and a field that is declared again keeps its place."""
+        cls.fields_by_name = {}
+        for each in reversed(cls.__bases__):
+            cls.fields_by_name |= getattr(each, "fields_by_name", {})
+        for name, annotation in get_annotations(cls).items():
+            kind, option = get_args(annotation) if hasattr(annotation, "__metadata__") else (annotation, Option(""))
+            default = vars(cls).get(name, Parameter.empty)
+            cls.fields_by_name[name] = DeclaredOption(
+                name, option.type or OPTION_TYPES[kind], default, not kw_only, option
+            )
+
+    def __init__(self, *positional: Any, **keywords: Any) -> None:
+        names = [each.name for each in self.fields_by_name.values() if each.is_positional]
+        defaults = {each.name: each.default for each in self.fields_by_name.values()}
+        vars(self).update(defaults | dict(zip(names, positional, strict=False)) | keywords)
+
+
 def declared_options(arguments: type[Arguments]) -> tuple[DeclaredOption, ...]:
     """Return the options that a class of arguments declares, the positional ones first."""
     options: list[DeclaredOption] = []
     for each in arguments.fields_by_name.values():
-        if get_origin(each.annotation) is Annotated:
-            option: Option = get_args(each.annotation)[1]
-            names, place = [each.name for each in options], option.place_after
-            declared = DeclaredOption(each.name, each.type, each.default, each.is_positional, option)
-            options.insert(names.index(place) + 1 if place else len(options), declared)
+        if each.option.help:
+            names, place = [option.name for option in options], each.option.place_after
+            options.insert(names.index(place) + 1 if place else len(options), each)
     return tuple(sorted(options, key=lambda each: not each.is_positional))
 
 
