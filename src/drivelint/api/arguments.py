@@ -85,7 +85,7 @@ def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
 
 
 def with_arguments_of(arguments: Callable[_P, _A]) -> Callable[[Callable[[_A], _R]], Callable[_P, _R]]:
-    """Return a decorator: the function of a dataclass of arguments becomes a function of its fields, with argument checks."""
+    """Return a decorator: the function of a class of arguments becomes a function of its fields, with argument checks."""
 
     def decorate(function: Callable[[_A], _R]) -> Callable[_P, _R]:
         def call(*args: _P.args, **keywords: _P.kwargs) -> _R:

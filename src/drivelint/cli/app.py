@@ -96,7 +96,7 @@ def demo(
 
 
 @app.command()
-@options.with_declared_options
+@options.DeclaredCommand
 def inspect(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
@@ -130,7 +130,7 @@ def inspect(
 
 
 @app.command()
-@options.with_declared_options
+@options.DeclaredCommand
 def convert(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],

@@ -28,7 +28,7 @@ DeltaFolder = Annotated[
 ]
 
 
-@options.with_declared_options
+@options.DeclaredCommand
 def audit(
     *,
     sources: Annotated[

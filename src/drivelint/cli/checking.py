@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions
 
 
-@options.with_declared_options
+@options.DeclaredCommand
 def check(arguments: CheckCommandArguments) -> None:
     """Judge recorded drives against the rules.
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import is_dataclass
-from functools import wraps
+from functools import cached_property
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import typer
 
 from drivelint.cli import completion
 from drivelint.options.arguments import CheckCommandArguments
-from drivelint.options.declaration import DeclaredOption, declared_options
+from drivelint.options.declaration import Arguments, DeclaredOption, declared_options
 from drivelint.options.types import Format
 
 if TYPE_CHECKING:
@@ -53,8 +52,11 @@ def declared_info(declared: DeclaredOption) -> Any:
     )
 
 
+_OPTIONS_OF_CHECK: Final = {each.name: each for each in declared_options(CheckCommandArguments)}
+
+
 def _option_of_check(name: str) -> Any:
-    return next(declared_info(each) for each in declared_options(CheckCommandArguments) if each.name == name)
+    return declared_info(_OPTIONS_OF_CHECK[name])
 
 
 MinJudged = Annotated[float | None, _option_of_check("min_judged")]
@@ -69,16 +71,34 @@ Quiet = Annotated[bool, _option_of_check("quiet")]
 FormatOption = Annotated[Format, _option_of_check("format_")]
 
 
-def with_declared_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Replace each parameter of a command that is a class of arguments by the options that the class declares.
+class DeclaredCommand:
+    """A command in which each parameter that is a class of arguments is replaced by the options that the class declares.
 
-    Typer gets a parameter per option, with the name of the engine's field.
+    Typer gets a parameter per option, with the name of the engine's field. They are made when Typer asks for them, only for the command
+    that runs.
     """
-    groups: dict[str, Any] = {}
-    parameters: list[Parameter] = []
-    for each in signature(command, eval_str=True).parameters.values():
-        if is_dataclass(each.annotation):
-            groups[each.name] = each.annotation
+
+    def __init__(self, command: Callable[..., None]) -> None:
+        self._command = command
+        self.__name__, self.__module__, self.__doc__ = command.__name__, command.__module__, command.__doc__
+
+    @cached_property
+    def _parameters_of_command(self) -> dict[str, Parameter]:
+        return dict(signature(self._command, eval_str=True).parameters)
+
+    @property
+    def _groups(self) -> dict[str, type[Arguments]]:
+        kinds = {name: each.annotation for name, each in self._parameters_of_command.items()}
+        return {name: kind for name, kind in kinds.items() if isinstance(kind, type) and issubclass(kind, Arguments)}
+
+    @property
+    def __signature__(self) -> Signature:
+        """Return the signature that Typer reads."""
+        parameters: list[Parameter] = []
+        for name, each in self._parameters_of_command.items():
+            if name not in self._groups:
+                parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
+                continue
             parameters += [
                 Parameter(
                     declared.field,
@@ -86,17 +106,17 @@ def with_declared_options(command: Callable[..., None]) -> Callable[..., None]:
                     default=declared.default,
                     annotation=Annotated[declared.type.command_line_type, declared_info(declared)],
                 )
-                for declared in declared_options(groups[each.name])
+                for declared in declared_options(self._groups[name])
             ]
-        else:
-            parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
+        return Signature(parameters)
 
-    @wraps(command)
-    def command_with_options(**values: Any) -> None:
-        for name, group in groups.items():
+    @property
+    def __annotations__(self) -> dict[str, Any]:  # type: ignore[override]
+        """Return the types that Typer reads."""
+        return {name: each.annotation for name, each in self.__signature__.parameters.items()}
+
+    def __call__(self, **values: Any) -> None:
+        """Run the command with the values of its options."""
+        for name, group in self._groups.items():
             values[name] = group(**{each.name: values.pop(each.field) for each in declared_options(group)})
-        command(**values)
-
-    command_with_options.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
-    command_with_options.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-    return command_with_options
+        self._command(**values)

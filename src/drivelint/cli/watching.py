@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Severity = Literal["critical", "major", "minor"]
 
 
-@options.with_declared_options
+@options.DeclaredCommand
 def watch(
     *,
     source: Annotated[

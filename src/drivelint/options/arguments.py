@@ -3,12 +3,11 @@
 The order is that of `--help`. Annotations are evaluated when the classes are made, so this module does not postpone them.
 """
 
-from dataclasses import KW_ONLY, dataclass
 from datetime import date
 from typing import Annotated
 
 from drivelint import option_values
-from drivelint.options.declaration import Option
+from drivelint.options.declaration import Arguments, Option
 from drivelint.options.types import (
     NAME_OR_PATH,
     AnyPath,
@@ -72,8 +71,7 @@ Sign = Annotated[
 Quiet = Annotated[bool, Option("No progress on stderr.", flag="--quiet -q")]
 
 
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class DriveArguments:
+class DriveArguments(Arguments):
     """How a log is read, and the map on which it is judged: the options of every command that reads a log."""
 
     map: Annotated[
@@ -136,15 +134,13 @@ class DriveArguments:
     topic: Annotated[str | None, Option("The MCAP topic to read, if several are possible.", "NAME")] = None
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class ReadTraceArguments(DriveArguments):
+class ReadTraceArguments(DriveArguments, kw_only=False):
     """The arguments of `drivelint.read_trace` in Python."""
 
     path: AnyPath
 
 
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class OutputArguments:
+class OutputArguments(Arguments):
     """The folder of a result."""
 
     out: Annotated[
@@ -153,8 +149,7 @@ class OutputArguments:
     overwrite: Annotated[bool, Option("Also replace files in it that drivelint did not write.")] = False
 
 
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class RuleArguments:
+class RuleArguments(Arguments):
     """The rules and profiles of a run."""
 
     rules: Rules = None
@@ -164,22 +159,24 @@ class RuleArguments:
     rules_dir: RulesDirs = None
 
 
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class ExitCodeArguments:
+class ExitCodeArguments(Arguments):
     """The verdicts that cause an exit code other than 0."""
 
     fail_on: Annotated[FailOn, Option("Lowest severity that causes exit code 1.")] = "critical"
     strict: Annotated[bool, Option("Exit code 4 if a rule is unknown.")] = False
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class CheckArguments(ExitCodeArguments, RuleArguments, OutputArguments, DriveArguments):
-    """The arguments of `drivelint.check` in Python, and of `drivelint check` except for those on how it prints."""
+class TracesArguments(Arguments, kw_only=False):
+    """The logs of a check."""
 
     traces: Annotated[
         Paths, Option("Recorded drives: files, globs, folders, or a manifest of them, as in audit.", "TRACE")
     ]
-    _: KW_ONLY
+
+
+class CheckArguments(ExitCodeArguments, RuleArguments, OutputArguments, DriveArguments, TracesArguments):
+    """The arguments of `drivelint.check` in Python, and of `drivelint check` except for those on how it prints."""
+
     rules: Annotated[
         Texts,
         Option(
@@ -251,7 +248,6 @@ class CheckArguments(ExitCodeArguments, RuleArguments, OutputArguments, DriveArg
     progress: bool = False
 
 
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class CheckCommandArguments(CheckArguments):
     """The arguments of `drivelint check` on the command line."""
 

@@ -1,6 +1,6 @@
-"""Declares an option: the class `Option` stands in the annotation of a dataclass field, or of a command's parameter.
+"""Declares an option: the class `Option` stands in the annotation of a field of a class of arguments.
 
-    class DriveArguments:
+    class DriveArguments(Arguments):
         map_dir: Annotated[AnyPath | None, Option("Folder of maps.", "DIR")] = None
 
 is `--map-dir DIR` on the command line, the keyword `map_dir` in Python, and the key `map-dir` in `drivelint.toml`.
@@ -8,10 +8,9 @@ is `--map-dir DIR` on the command line, the keyword `map_dir` in Python, and the
 
 from __future__ import annotations
 
-from dataclasses import MISSING, Field, dataclass, fields
-from functools import cache
-from inspect import Parameter, Signature
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, TypeVar, get_args, get_origin
+from dataclasses import fields
+from inspect import Parameter, Signature, get_annotations
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar, dataclass_transform, get_args, get_origin
 
 from drivelint.options.types import OPTION_TYPES, OptionType, require_one_of
 
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
 _OptionsOfEngine = TypeVar("_OptionsOfEngine")
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class Option:
+class Option(NamedTuple):
     """What an option's annotation says besides its type: the help, and how the option differs from its name in Python.
 
     `metavar`: the name of the value in the help. `flag`: the spelling on the command line. `minimum`, `maximum`: bounds of a number.
@@ -45,7 +43,7 @@ class Option:
 
 
 class DeclaredOption(NamedTuple):
-    """An option of a class of arguments: its name in Python, its type, and its declaration."""
+    """A field of a class of arguments. `default`: `Parameter.empty` if it must be given. `option`: without help if only Python has it."""
 
     name: str
     type: OptionType
@@ -70,47 +68,56 @@ class DeclaredOption(NamedTuple):
         converted = self.type.convert(value)
         return converted if self.option.parse is None else self.option.parse(converted)
 
-    @classmethod
-    def from_field(cls, field: Field[Any]) -> DeclaredOption | None:
-        """Return the option that a field declares; None: it has no `Option`."""
-        if get_origin(field.type) is not Annotated:
-            return None
-        kind, option = get_args(field.type)
-        return cls(field.name, option.type or OPTION_TYPES[kind], _default(field), not field.kw_only, option)
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+class Arguments:
+    """The base of classes of arguments. To type checkers they are dataclasses, which take longer to define than some commands run."""
+
+    fields_by_name: ClassVar[dict[str, DeclaredOption]] = {}
+
+    def __init_subclass__(cls, *, kw_only: bool = True) -> None:
+        """Find the fields of the class; those of its last base come first, and a field that is declared again keeps its place."""
+        cls.fields_by_name = {}
+        for each in reversed(cls.__bases__):
+            cls.fields_by_name |= getattr(each, "fields_by_name", {})
+        for name, annotation in get_annotations(cls).items():
+            kind, option = get_args(annotation) if hasattr(annotation, "__metadata__") else (annotation, Option(""))
+            default = vars(cls).get(name, Parameter.empty)
+            cls.fields_by_name[name] = DeclaredOption(
+                name, option.type or OPTION_TYPES[kind], default, not kw_only, option
+            )
+
+    def __init__(self, *positional: Any, **keywords: Any) -> None:
+        names = [each.name for each in self.fields_by_name.values() if each.is_positional]
+        defaults = {each.name: each.default for each in self.fields_by_name.values()}
+        vars(self).update(defaults | dict(zip(names, positional, strict=False)) | keywords)
 
 
-def _default(field: Field[Any]) -> Any:
-    return Parameter.empty if field.default is MISSING else field.default
-
-
-@cache
-def declared_options(arguments: type) -> tuple[DeclaredOption, ...]:
+def declared_options(arguments: type[Arguments]) -> tuple[DeclaredOption, ...]:
     """Return the options that a class of arguments declares, the positional ones first."""
     options: list[DeclaredOption] = []
-    for each in fields(arguments):
-        if (declared := DeclaredOption.from_field(each)) is not None:
-            names = [option.name for option in options]
-            place = declared.option.place_after
-            options.insert(names.index(place) + 1 if place else len(options), declared)
+    for each in arguments.fields_by_name.values():
+        if each.option.help:
+            names, place = [option.name for option in options], each.option.place_after
+            options.insert(names.index(place) + 1 if place else len(options), each)
     return tuple(sorted(options, key=lambda each: not each.is_positional))
 
 
-def python_signature(arguments: type, returns: Any) -> Signature:
+def python_signature(arguments: type[Arguments], returns: Any) -> Signature:
     """Return the signature of a function in Python that takes these arguments, with the names of their types as texts."""
-    names = {each.name: each.type.name for each in declared_options(arguments)}
     parameters = [
         Parameter(
             each.name,
-            Parameter.KEYWORD_ONLY if each.kw_only else Parameter.POSITIONAL_OR_KEYWORD,
-            default=_default(each),
-            annotation=names.get(each.name) or OPTION_TYPES[each.type].name,
+            Parameter.POSITIONAL_OR_KEYWORD if each.is_positional else Parameter.KEYWORD_ONLY,
+            default=each.default,
+            annotation=each.type.name,
         )
-        for each in fields(arguments)
+        for each in arguments.fields_by_name.values()
     ]
     return Signature(sorted(parameters, key=lambda each: each.kind), return_annotation=returns)
 
 
-def engine_values(arguments: Any, group: type | None = None) -> dict[str, Any]:
+def engine_values(arguments: Arguments, group: type[Arguments] | None = None) -> dict[str, Any]:
     """Return field of the engine -> value, for all options of the arguments, or for those that the class `group` declares.
 
     Errors: `UsageError` for an invalid value.
