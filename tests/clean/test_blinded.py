@@ -27,6 +27,9 @@ ABOUT_S = 10.0
 ANY_TIME = {
     "criticality.pet": "what is not known of an actor without a place stands at its first step",
     "ukhc.r168.drop-back": "one row stands for all the time in which it is not known who is ahead, from its first step",
+    "alks-r157.cut-in-gap": "the same",
+    "stvo.ri2": "one row stands for all the time in which the ego may pass somebody without a place, at its last step",
+    "declared.r202.checks-before-reversing": "one row stands for all the time in which the ego's speed is not known, from its first step",
 }
 """Rules whose unknown rows may begin earlier, and why."""
 MAPS: dict[str, dict[str, Any]] = {
