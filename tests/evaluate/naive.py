@@ -112,16 +112,14 @@ def invariant(steps: list[Step], gap: int, period: int, *, wet_only: bool = Fals
     live = expected([blind(s, wet_only=wet_only) for s in forced])
     out: list[Outcome] = []
     episode: list[Step] = []
-    for i, step in enumerate(live):
+    for step in live:
         if episode and (step.seg != episode[-1].seg or step.t - episode[-1].t > gap):
             out.append(_episode(episode))
             episode = []
-        if i and live[i - 1].seg != step.seg:
-            out += _hole(live[i - 1], step, steps, gap, period)
         episode.append(step)
     if episode:
         out.append(_episode(episode))
-    return out
+    return sorted([*out, *_holes(live, steps, gap, period)], key=lambda outcome: (outcome.start, outcome.end))
 
 
 def _episode(steps: list[Step]) -> Outcome:
@@ -131,20 +129,16 @@ def _episode(steps: list[Step]) -> Outcome:
     )
 
 
-def _hole(before: Step, after: Step, steps: list[Step], gap: int, period: int) -> list[Outcome]:
-    def first(seg: int) -> int:
-        return min(s.t for s in steps if s.seg == seg)
-
-    def last(seg: int) -> int:
-        return max(s.t for s in steps if s.seg == seg)
-
-    from_edge = last(before.seg) - before.t <= gap
-    to_edge = after.t - first(after.seg) <= gap
-    if not from_edge and not to_edge:
-        return []
-    start = last(before.seg) if from_edge else last(after.seg - 1)
-    end = first(after.seg) if to_edge else first(before.seg + 1)
-    return [Outcome(start, end, "unknown", "log_hole", start, max(1, (end - start) // period - 1), 0)]
+def _holes(live: list[Step], steps: list[Step], gap: int, period: int) -> list[Outcome]:
+    """Holes that the rule reaches: it applies at the last step before, or at the first step after."""
+    out = []
+    for before in sorted({step.seg for step in steps})[:-1]:
+        start = max(step.t for step in steps if step.seg == before)
+        end = min(step.t for step in steps if step.seg == before + 1)
+        reaches = [s for s in live if (s.seg == before and start - s.t <= gap) or (s.seg == before + 1 and s.t - end <= gap)]
+        if reaches:
+            out.append(Outcome(start, end, "unknown", "log_hole", start, max(1, (end - start) // period - 1), 0))
+    return out
 
 
 def window(steps: list[Step], a: int, b: int, gap: int, *, eventually: bool) -> Outcome:

@@ -246,6 +246,29 @@ def test_no_hole_row_where_the_rule_does_not_reach_the_hole(tmp_path: Path) -> N
     assert brief(verdicts(rule, {"ego_state": near})) == [("pass", "kept"), ("unknown", "log_hole"), ("pass", "kept")]
 
 
+@pytest.mark.parametrize("there", ["0.8..1", "3..3.2"])
+def test_a_rule_that_applies_on_one_side_of_a_hole_may_apply_in_it(tmp_path: Path, there: str) -> None:
+    """As for a danger space that is left while nothing is recorded: what was not seen is no pass."""
+    sql = SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")
+    rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": sql})
+    one_side = [block | {"in_junction": {"else": False, there: True}} for block in HOLE["ego_state"]]
+    rows = verdicts(rule, {"ego_state": one_side})
+    assert sorted(brief(rows)) == [("pass", "kept"), ("unknown", "log_hole")]
+    assert {(r["t_start_ns"], r["t_end_ns"]) for r in rows if r["verdict"] == "unknown"} == {(10**9, 3 * 10**9)}
+
+
+@pytest.mark.parametrize(("seen_s", "holes"), [("3..4 by 0.1", 1), ("3.5..4 by 0.1", 0)])
+def test_an_object_that_is_not_seen_behind_a_hole_is_lost_and_not_in_the_hole(
+    tmp_path: Path, seen_s: str, holes: int
+) -> None:
+    sql = GAP_SQL.replace(" FROM", ", clearance_m < 2.5 AS applies FROM")
+    rule = write(tmp_path, INVARIANT | MEASURED | GAP, {"condition": sql})
+    near = {"t_s": "0..1 by 0.1", "object_id": "b", "clearance_m": 2}
+    far = {"t_s": seen_s, "object_id": "b", "clearance_m": 9}
+    rows = verdicts(rule, {"step": [{"t_s": "0..1 by 0.1"}, {"t_s": "3..4 by 0.1"}], "pair": [near, far]})
+    assert brief(rows) == [("pass", "kept"), ("unknown", "log_hole")][: 1 + holes]
+
+
 def pairs(o1: list[Any], o2: list[Any]) -> dict[str, Any]:
     times = [i / 10 for i in range(len(o1))]
     blocks = [
