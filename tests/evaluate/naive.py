@@ -135,7 +135,9 @@ def _holes(live: list[Step], steps: list[Step], gap: int, period: int) -> list[O
     for before in sorted({step.seg for step in steps})[:-1]:
         start = max(step.t for step in steps if step.seg == before)
         end = min(step.t for step in steps if step.seg == before + 1)
-        reaches = [s for s in live if (s.seg == before and start - s.t <= gap) or (s.seg == before + 1 and s.t - end <= gap)]
+        reaches = [
+            s for s in live if (s.seg == before and start - s.t <= gap) or (s.seg == before + 1 and s.t - end <= gap)
+        ]
         if reaches:
             out.append(Outcome(start, end, "unknown", "log_hole", start, max(1, (end - start) // period - 1), 0))
     return out
