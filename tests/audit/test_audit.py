@@ -165,7 +165,7 @@ def test_kills_lose_nothing_and_double_nothing(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
     command = drives.command(tmp_path / "out", "--memory", "200MB")
-    code, killed = audit_with_kills(command, n_kills=4, seconds=5.0)
+    code, killed = audit_with_kills(command, n_kills=4, seconds=2.0)
     assert killed > 0
     assert code == ExitCode.FAILED
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))

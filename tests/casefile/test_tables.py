@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import duckdb
+import pytest
 
 from drivelint.casefile.merged_cases import NumberedCase, merge_cases
 from drivelint.casefile.mutants import mutants_of_select
 from drivelint.casefile.table_cases import rows_difference
 from drivelint.casefile.table_mutation import judge_table_mutants
+from drivelint.sql.declarations import column_types
 from drivelint.sql.library import library_tables
 
 LANE_BESIDE = """
@@ -44,6 +46,16 @@ def test_a_reason_may_be_expected_as_a_mapping() -> None:
         ({"code": {"code": "others_fit"}}, False),
     ):
         assert (rows_difference("registration", [{"reason": reason}], [row]) == "") is same
+
+
+@pytest.mark.parametrize("places", [(186.0, 285.0), (285.0, 186.0)])
+def test_rows_with_the_same_ids_are_compared_in_no_order(places: tuple[float, float]) -> None:
+    """A SELECT returns them in the order in which its threads end."""
+    columns = {"drive_id": "d", "ego_id": "e", "chain_id": 1, "kind": "stop_line", "mark_id": "l"}
+    rows = [{**dict.fromkeys(column_types()["way_mark"], "x"), **columns, "s_start_m": place} for place in places]
+    wanted = [columns, {**columns, "s_start_m": 285}]
+    assert rows_difference("way_mark", wanted, rows) == ""
+    assert "expected s_start_m: 285" in rows_difference("way_mark", wanted, [rows[0] | {"s_start_m": 186.0}] * 2)
 
 
 def test_a_case_with_an_empty_table_leaves_the_rows_of_the_other_cases() -> None:

@@ -13,9 +13,9 @@ A case gives rows of the tables that the SELECT reads, and all rows that the SEL
 * `given` and `expect` have the form of `given` in the cases of rules: blocks with scalars, lists, ranges, and values by time.
 * `step`, `clock` and `_ego_clock` are computed as in the cases of rules if the SELECT reads them and the case does not give them. Every
   drive has a row of `data_log`. The map is `m` where none is given.
-* Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words.
-  Numbers must agree to the written decimals, at least two; in quotes, zeros at the end count: '0.050'. `expect: []` means: no row.
-  A column that is declared NOT NULL never is.
+* Of the rows in `expect`, only the given columns are compared. Rows are compared in the order of their ids, times, counts and words; where
+  these are the same, each is compared with the row that it agrees with. Numbers must agree to the written decimals, at least two; in
+  quotes, zeros at the end count: '0.050'. `expect: []` means: no row. A column that is declared NOT NULL never is.
 * A text that is JSON, such as a reason, may be expected as a mapping with the parts that matter, in a list with an item for each row:
   `reason: [{code: on_lane}]`. A geometry is given and expected as well-known text: `geom: POLYGON ((0 0, 2 0, 2 2, 0 0))`; an equal area
   agrees, wherever its outline begins.
@@ -26,6 +26,7 @@ from __future__ import annotations
 import json
 import re
 from decimal import Decimal
+from itertools import groupby
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import duckdb
@@ -185,13 +186,25 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
         if not _UNORDERED_TYPE.match(kinds[c])
         and all(c in row and not isinstance(row[c], dict) for row in expected_rows)
     ]
-    pairs = zip(_in_order(expected_rows, ordered), _in_order(rows, ordered), strict=True)
-    for wanted, row in pairs:
-        for column, value in wanted.items():
-            is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
-            if not is_same(value, row[column]):
-                wanted_text, got = (_cell_text(column, each) for each in (value, row[column]))
-                return f"expected {wanted_text}, got {got.partition(': ')[2]}: {_row_text(row)}"
+    remaining = _in_order(rows, ordered)
+    for _, group in groupby(_in_order(expected_rows, ordered), key=lambda row: _order_key(row, ordered)):
+        tied = list(group)
+        candidates, remaining = remaining[: len(tied)], remaining[len(tied) :]
+        # rows with the same ids are in no order: each is compared with the row that it agrees with, the most detailed one first
+        for wanted in sorted(tied, key=len, reverse=True):
+            messages = [_row_difference(wanted, row, kinds) for row in candidates]
+            if "" not in messages:
+                return messages[0]
+            del candidates[messages.index("")]
+    return ""
+
+
+def _row_difference(wanted: Row, row: Row, kinds: Mapping[str, str]) -> str:
+    for column, value in wanted.items():
+        is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
+        if not is_same(value, row[column]):
+            wanted_text, got = (_cell_text(column, each) for each in (value, row[column]))
+            return f"expected {wanted_text}, got {got.partition(': ')[2]}: {_row_text(row)}"
     return ""
 
 
@@ -200,7 +213,11 @@ def _count(rows: Sequence[Row]) -> str:
 
 
 def _in_order(rows: Sequence[Row], columns: Sequence[str]) -> list[Row]:
-    return sorted(rows, key=lambda row: [(row[c] is None, "" if row[c] is None else row[c]) for c in columns])
+    return sorted(rows, key=lambda row: _order_key(row, columns))
+
+
+def _order_key(row: Row, columns: Sequence[str]) -> list[tuple[bool, Any]]:
+    return [(row[c] is None, "" if row[c] is None else row[c]) for c in columns]
 
 
 def _is_same(expected_value: Any, actual_value: Any) -> bool:
