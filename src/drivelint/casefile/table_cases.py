@@ -199,8 +199,8 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
     return ""
 
 
-def _row_difference(wanted: Row, row: Row, kinds: Mapping[str, str]) -> str:
-    for column, value in wanted.items():
+def _row_difference(expected_row: Row, row: Row, kinds: Mapping[str, str]) -> str:
+    for column, value in expected_row.items():
         is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
         if not is_same(value, row[column]):
             wanted_text, got = (_cell_text(column, each) for each in (value, row[column]))
