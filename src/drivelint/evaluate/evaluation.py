@@ -71,7 +71,7 @@ class Evaluation:
     """The rules whose judged steps are not aggregated to outcomes yet."""
     _n_pending: int = field(default=0, init=False)
     _has_old_steps: bool = field(default=True, init=False)
-    """Whether the tables of judged steps have steps of earlier rules: the next rule creates these tables anew."""
+    """Whether the tables of judged steps contain steps of earlier rules. Then the next rule replaces these tables."""
     _may_be_double: bool = field(default=False, init=False)
     """Whether there may be several pending steps with the same key."""
     _rules_to_aggregate_separately: set[int] = field(default_factory=set, init=False)
