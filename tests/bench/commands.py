@@ -108,6 +108,8 @@ def _in_turn(place: Place, commands: Mapping[str, Sequence[str]], rounds: int) -
     for no in range(rounds + (rounds > 1)):
         for name, arguments in commands.items():
             for side, tree in trees.items():
+                if side == BEFORE and "-j" in arguments:
+                    continue  # an older `check` has one worker, and no such option
                 found = _run(tree, arguments, place.home)
                 if no or rounds == 1:
                     taken[name][side].append(found)
@@ -140,8 +142,8 @@ def _rows(section: str, taken: Mapping[str, Mapping[str, list[Taken]]], bars: Ma
     """Return a row per command: the time of now, or, with another commit, the ratio to it."""
     rows = []
     for name, sides in taken.items():
-        spans = {side: median([each.span for each in runs]) for side, runs in sides.items()}
-        if BEFORE not in spans:
+        spans = {side: median([each.span for each in runs]) for side, runs in sides.items() if runs}
+        if not sides.get(BEFORE):
             rows.append(Row(section, name, spans[NOW].wall, cpu=spans[NOW].cpu))
             continue
         ratio = spans[NOW].cpu / spans[BEFORE].cpu
