@@ -112,6 +112,14 @@ def test_ids_and_texts_are_free(tmp_path: Path) -> None:
     assert scene["pair"][0]["object_id"] == "cyclist"
 
 
+def test_a_value_by_time_may_be_spread_over_its_rows(tmp_path: Path) -> None:
+    speeds = {"else": "0..6", "0.2..0.4": "20..30", 0.5: [7]}
+    scene = complete_scene(measured(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": speeds}}, ())
+    assert [row["speed_mps"] for row in scene["ego_state"]] == [0, 1, 20, 25, 30, 7, 6]
+    with pytest.raises(RuleError, match=r"ego_state\.speed_mps.*: 0\.5: 2 values for 1 rows"):
+        complete_scene(measured(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": {0.5: [7, 8]}}}, ())
+
+
 def test_an_infinite_value_agrees_only_with_the_same_infinite_value() -> None:
     inf = float("inf")
     assert is_same_value(inf, inf, 1)

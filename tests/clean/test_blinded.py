@@ -38,6 +38,7 @@ MAPS: dict[str, dict[str, Any]] = {
     "markings": {"lane_boundary": blinding.unsaid("marking")},
     "limits and types": {"speed_limit": blinding.empty, "lanelet": blinding.unsaid("road_type")},
     "handedness": {"environment": blinding.guessed},
+    "links": {"lane_link": blinding.empty},
     "signals": {"traffic_signal": blinding.empty, "road_object": blinding.empty},
 }
 # (what is taken away, rule): why the rule need not be broken nor unknown any more

@@ -193,6 +193,18 @@ candidate_without_place AS (
                 AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false)
             AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
+-- A corridor that ends while the ego is over the line, as where the map lacks a link, hides whom the ego passes further on.
+candidate_beyond_corridor AS (
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, h.object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, a.length_m, false AS is_placed, min(h.least_m) AS near_m
+    FROM (SELECT * FROM begin WHERE t_back_ns IS NULL) g
+    JOIN step st ON st.drive_id = g.drive_id AND st.ego_id = g.ego_id AND st.t_ns = g.t_end_ns
+    JOIN step n ON n.drive_id = st.drive_id AND n.ego_id = st.ego_id AND n.seg = st.seg AND n.k = st.k + 1
+    JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns AND e.x_m IS NOT NULL AND e.front_s_m IS NULL
+    JOIN hidden h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns >= g.t0_ns AND h.t_ns <= g.t_end_ns
+    JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
+    WHERE h.vehicle AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false
+    GROUP BY ALL
+),
 -- An object that gets a position on the corridor only after t0, ahead in the lane, and that the ego passes, is an overtaken vehicle, too.
 late_candidate AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
@@ -209,6 +221,10 @@ overtaken_candidate AS (
         SELECT * FROM ahead
         UNION ALL
         SELECT * FROM candidate_without_place
+        UNION ALL
+        SELECT b.* FROM candidate_beyond_corridor b
+        ANTI JOIN ahead p USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+        ANTI JOIN candidate_without_place h USING (drive_id, ego_id, chain_id, t0_ns, object_id)
         UNION ALL
         SELECT l.* FROM late_candidate l
         ANTI JOIN pair_in_excursion p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id AND p.t_ns = l.t0_ns AND p.object_id = l.object_id AND p.front_s_m IS NOT NULL

@@ -217,7 +217,7 @@ def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[An
     """Return the value of each row by its time; later entries take precedence."""
     if not isinstance(times, list):
         raise RuleError(f"{where}: a value by time needs the times: t_s as a list or range")
-    rows = [value.get("else")] * len(times)
+    rows = _spread(value.get("else"), len(times), f"{where}: else")
     for key, chosen in value.items():
         if key == "else":
             continue
@@ -226,8 +226,22 @@ def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[An
             raise RuleError(f"{where}: {key!r} is no time: write 5.0, 5.0..5.3 or 'else'")
         first = round(Decimal(match[1]) * 10**9)
         last = round(Decimal(match[2] or match[1]) * 10**9)
-        rows = [chosen if first <= t <= last else old for t, old in zip(times, rows, strict=True)]
+        hit = [i for i, t in enumerate(times) if first <= t <= last]
+        for i, new in zip(hit, _spread(chosen, len(hit), f"{where}: {key}"), strict=True):
+            rows[i] = new
     return rows
+
+
+def _spread(value: Any, n: int, where: str) -> list[Any]:
+    """Return one value for each of n rows: `a..b` evenly spaced, a list as it is, anything else in each row."""
+    if callable(value):
+        spaced: list[Any] = value(n)
+        return spaced
+    if not isinstance(value, list):
+        return [value] * n
+    if len(value) != n:
+        raise RuleError(f"{where}: {len(value)} values for {n} rows")
+    return value
 
 
 def _step_rows(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
