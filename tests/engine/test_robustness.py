@@ -14,6 +14,7 @@ import pytest
 
 from drivelint import catalogue, demo, run
 from drivelint.engine.robustness.copies import _standard_normal_draws
+from drivelint.engine.robustness.judging import RobustnessJudge
 from drivelint.engine.robustness.question import (
     LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING,
     N_COPIES_TO_SETTLE,
@@ -22,6 +23,7 @@ from drivelint.engine.robustness.question import (
     RobustnessQuestion,
     worst_near_and_other_questions,
 )
+from drivelint.engine.robustness.window import Window
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -128,6 +130,23 @@ def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
     rows = checked(logs, ("collision",), robustness=False)
     assert rows
     assert all(row["n_copies"] is None and row["n_stays"] is None for row in rows)
+
+
+@pytest.mark.ci
+def test_findings_that_have_their_copies_are_not_judged_again(logs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Copies for all findings, of which the worst is only possible: the others were judged with it, and nothing is left to judge."""
+    judge_windows, settled = RobustnessJudge._judge_windows, []
+
+    def judge_and_note(judge: RobustnessJudge, chunk: list[Window]) -> None:
+        settled.extend(question.is_settled for window in chunk for question in window.questions)
+        judge_windows(judge, chunk)
+
+    monkeypatch.setattr(RobustnessQuestion, "is_finding_certain", False)
+    monkeypatch.setattr(RobustnessJudge, "_judge_windows", judge_and_note)
+    rows = checked(logs, ("collision",))
+    assert len(rows) > len({row["rule_id"] for row in rows})
+    assert all(row["n_copies"] for row in rows)
+    assert not any(settled)
 
 
 @cache

@@ -149,7 +149,7 @@ class RobustnessJudge:
         self, drives: Mapping[str, Drive], questions: Sequence[RobustnessQuestion], most_states: int
     ) -> None:
         """Judge copies until all questions are settled, no larger window is left, or the run is stopped."""
-        open_ = questions
+        open_: Sequence[RobustnessQuestion] = [question for question in questions if not question.is_settled]
         while open_ and not self._is_stopped():
             chunks = _groups_of_windows(_next_windows(drives, open_), most_states)
             for chunk in takewhile(lambda _chunk: not self._is_stopped(), chunks):
