@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from functools import cache
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Final,
+    Literal,
+    NamedTuple,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import msgspec
 
@@ -15,6 +26,10 @@ if TYPE_CHECKING:
 
 _FILLED_IN = "line"
 """The key that the reader of the document adds."""
+_KIND_BY_TYPE: Final[dict[Any, str]] = {
+    bool: "yes or no", NoneType: "nothing", int: "a number", float: "a number", list: "a list", tuple: "a list", dict: "keys with values"
+}  # fmt: skip
+"""The type of a value -> its kind in words; all others are text."""
 
 
 class Problem(NamedTuple):
@@ -98,29 +113,15 @@ def _required_keys(struct: type[msgspec.Struct]) -> set[str]:
 
 def _kind_of_value(value: Any) -> str:
     """Return the kind of a YAML value, in words."""
-    if isinstance(value, bool):
-        return "yes or no"
-    if value is None:
-        return "nothing"
-    if isinstance(value, int | float):
-        return "a number"
-    return {dict: "keys with values", list: "a list"}.get(type(value), "text")
+    return _KIND_BY_TYPE.get(type(value), "text")
 
 
 def _kind_of_type(kind: Any) -> str:
     """Return the kind of the values of a type, in the words of `_kind_of_value`."""
-    kind = get_origin(kind) or kind
-    if kind is dict or (isinstance(kind, type) and issubclass(kind, msgspec.Struct)):
-        return "keys with values"
-    words = {
-        bool: "yes or no",
-        NoneType: "nothing",
-        int: "a number",
-        float: "a number",
-        list: "a list",
-        tuple: "a list",
-    }
-    return words.get(kind, "text")
+    plain = get_origin(kind) or kind
+    if isinstance(plain, type) and issubclass(plain, msgspec.Struct):
+        plain = dict
+    return _KIND_BY_TYPE.get(plain, "text")
 
 
 def _exact_length(kind: Any) -> int | None:
