@@ -93,6 +93,12 @@ def test_every_case_is_a_drive_of_its_own(tmp_path: Path) -> None:
     ]
 
 
+def test_a_select_from_a_table_that_there_is_not_is_refused(tmp_path: Path) -> None:
+    wrong = table(tmp_path, select=SELECT.replace("ego_state", "ego_stat"))
+    with pytest.raises(RuleError, match=r"ego_mode\.sql: there is no table 'ego_stat': did you mean 'ego_state'\?"):
+        table_cases.run_table_cases(wrong)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

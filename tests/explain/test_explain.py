@@ -17,9 +17,10 @@ from rich.console import Console
 
 from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, VerdictFilter, explain
-from drivelint.explain.target import _complete_name
+from drivelint.explain.target import _complete_name, _other_verdicts
 from drivelint.explain.text import _sentence_with_rounded_numbers, render, to_json
 from drivelint.result.text import seconds
+from tests.drawn import drawn
 from tests.explain.checked import OVERTAKE, RULES, check
 from tests.shared_data import ROOT
 
@@ -267,6 +268,33 @@ def test_an_unknown_names_the_section_and_the_column_without_a_value(tmp_path: P
     assert "NULL in overtake (queries/library/overtakes/overtake.sql): t3_ns." in decides
     anchor = decides[decides.index("-- @anchor") : decides.index("-- @condition")].splitlines()
     assert [line.partition("  -- NULL here: ")[2] for line in anchor if "t3_ns" in line] == ["t3_ns", ""]
+
+
+@pytest.mark.ci
+def test_an_unknown_names_the_column_that_tells_that_something_is_not_known(tmp_path: Path) -> None:
+    """A person is lost beside the crossing; that the map states no kind of it is not the reason."""
+    drawn("crossings", "zebra-walker-lost", tmp_path / "lost")
+    over = {"map": None, "mapping": None, "profiles": ("nominal",), "params": ()}
+    check(tmp_path / "out", traces=(str(tmp_path / "lost"),), rules=("ukhc.r195.zebra-on",), **over)
+    text = said(of(tmp_path / "out", "zebra-on"), 500)
+    decides = text[text.index("What would decide it") :]
+    assert "no in crossing_passage (queries/library/junctions/crossing_passage.sql): known." in decides
+    assert "WHEN NOT known THEN why('person_unplaced')  -- no here: known" in decides
+
+
+def test_other_verdicts_of_the_rule_are_told_worst_first() -> None:
+    row = {
+        "drive_id": "d",
+        "rule_id": "a.b",
+        "ego_id": "e",
+        "profile": None,
+        "t_start_ns": 0,
+        "occurrence": 0,
+        "margin": None,
+    }
+    verdicts = [{**row, "object_id": verdict, "verdict": verdict} for verdict in ("pass", "unknown", "fail", "error")]
+    others = _other_verdicts(verdicts[0], verdicts)
+    assert [other["verdict"] for other in others] == ["error", "fail", "unknown"]
 
 
 @pytest.mark.slow

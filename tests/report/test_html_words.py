@@ -6,11 +6,14 @@ import hashlib
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pyarrow as pa
 import pytest
 
 from drivelint.report.html.explanations import notes_on_published_logs
+from drivelint.report.html.incidents import involved_actors
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
 from tests.report.synthetic import drive, finding, result, verdict
@@ -28,6 +31,12 @@ def test_the_first_page_explains_the_words_it_uses(overtakes: Result, text: str)
     assert "Danger space" in words
     assert "RSS" not in words, "no rule of that pack was asked for"
     assert "Words used here" not in page(result([verdict("pass")]))
+
+
+def test_an_ego_whose_id_says_so_is_named_once() -> None:
+    rows = [finding(ego_id=ego_id, object_id="7") for ego_id in ("ego", "3")]
+    lines: Any = [SimpleNamespace(row=row, kind="fail") for row in rows]
+    assert [party["name"] for party in involved_actors(lines, {})] == ["ego 3", "ego", "object 7"]
 
 
 def test_what_happened_names_the_measure_and_the_parties(overtakes: Result, text: str) -> None:

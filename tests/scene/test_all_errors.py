@@ -54,6 +54,35 @@ def test_unknown_keys_and_words(tmp_path: Path) -> None:
     ]
 
 
+def test_values_of_a_wrong_kind_and_missing_keys(tmp_path: Path) -> None:
+    changes = {
+        "limit: 60 mph": "limit: 60",
+        "  what: nobody is there\n": "",
+        "seconds: 6": "seconds: many",
+        "from: 10": "there: [0]",
+    }
+    assert problems(tmp_path / "scenes.yml", changes) == [
+        "2: roads.country.roads.main.limit: 60 is a number: write a list or text (drivelint docs scenes)",
+        "4: scenes: the key 'what' is missing (drivelint docs scenes)",
+        "6: scenes.seconds: 'many' is text: write a number (drivelint docs scenes)",
+        "10: scenes.actors.ego.there: [0] has 1 value: write 2",
+    ]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"speed: 3": "speed: []"},
+        {"line: [600]": "line: []"},
+        {"seconds: 6": "seconds: 0"},
+        {"lane: main 1\n": "path: [[1, 2]]\n"},
+    ],
+    ids=str,
+)
+def test_what_cannot_be_drawn_is_refused(tmp_path: Path, change: dict[str, str]) -> None:
+    assert problems(tmp_path / "scenes.yml", change)
+
+
 def test_unknown_rules_and_verdicts(tmp_path: Path) -> None:
     found = problems(tmp_path / "scenes.yml", {"no-collision: pass": "no-colision: pass", "limit: pass": "limit: pas"})
     assert found == [

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.errors import UsageError
+from drivelint.errors import ExitCode, UsageError
 from drivelint.scene.judge import scene_test
 
 if TYPE_CHECKING:
@@ -39,3 +39,13 @@ def test_a_rule_that_is_not_there(tmp_path: Path, rule: str, words: str) -> None
     with pytest.raises(UsageError) as caught:
         scene_test(path, [], [], print)
     assert str(caught.value).endswith(words)
+
+
+@pytest.mark.ci
+def test_a_log_that_cannot_be_judged_is_told_with_its_reason(tmp_path: Path) -> None:
+    path = tmp_path / "scenes.yml"
+    text = SCENES.format(rule="ukhc.no-collision").replace("speed: 5", "speed: -9").replace("seconds: 2", "seconds: 4")
+    path.write_text(text, encoding="utf-8")
+    lines: list[str] = []
+    assert scene_test(path, [], [], lines.append) == ExitCode.FAILED
+    assert "expected pass, got refused: heading is off the direction of motion" in lines[0]

@@ -51,6 +51,11 @@ def test_the_parts_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         (("lifetime: part", "lifetime: step"), "no lifetime 'step': known are map, drive, part, run; "),
         (("        -- the drive", ""), "column drive_id has no comment: write `-- ` and what it is after it"),
         (("              -- the step", ""), "column t_ns has no comment: "),
+        (
+            ("-- the step", "-- the step {speed}"),
+            "column t_ns: 'speed' is no quantity of an actor: known are position, ",
+        ),
+        (("-- the step", "-- the step {size,class}"), "column t_ns: 'size,class' is no quantity of an actor: "),
     ],
 )
 def test_what_is_missing_is_told(

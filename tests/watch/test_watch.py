@@ -97,6 +97,7 @@ def test_every_alarm_is_a_finding_and_every_finding_has_one(result: tuple[list[d
 def test_the_alarm_of_the_contact_is_said_with_the_next_window(result: tuple[list[dict[str, Any]], Path]) -> None:
     (alarm,) = (each for each in of_type(result[0], "alarm") if each["rule_id"] == "ukhc.no-collision")
     assert (alarm["t_s"], alarm["severity"], alarm["object_id"]) == (9.7, "critical", "3")
+    assert (alarm["title"], alarm["breach"]) == ("No collision", "Collision")
     assert 0 <= alarm["latency_s"] <= 2.0
     assert alarm["said_s"] == pytest.approx(alarm["t_s"] + alarm["latency_s"])
 

@@ -11,6 +11,7 @@
 -- sense = "holds"
 -- reads = ["crossing_passage", "ego_state", "lane_occupancy", "passing", "road_user", "state_dynamics", "step"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
 --
 -- [params.zigzag_m]
 -- default = 18.0

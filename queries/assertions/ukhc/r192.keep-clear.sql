@@ -12,6 +12,8 @@
 -- tags = ["standing"]
 -- reads = ["crossing_passage", "standstill"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
+-- without_anchor = "the log does not show the ego past the crossing: record it until it is"
 --
 -- [params.near_m]
 -- default = 10.0

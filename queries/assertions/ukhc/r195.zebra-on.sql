@@ -10,6 +10,7 @@
 -- sense = "holds"
 -- reads = ["crossing_passage"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
 --
 -- [reasons.was_on_crossing_of_unknown_kind]
 -- says = "{object_id} was on it; the map does not state the kind of the crossing"

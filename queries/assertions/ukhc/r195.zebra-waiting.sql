@@ -11,6 +11,7 @@
 -- sense = "holds"
 -- reads = ["crossing_passage"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
 --
 -- [reasons.stood_at_end]
 -- says = "{object_id} stood at the end of the crossing"

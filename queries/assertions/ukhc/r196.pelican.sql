@@ -11,6 +11,7 @@
 -- sense = "holds"
 -- reads = ["crossing_passage", "ego_state", "stop_line_crossing"]
 -- requires = ["map", "registration", "ego_size"]
+-- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
 --
 -- [params.past_line_s]
 -- default = 10.0

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 _SURVIVOR_ADVICE: Final = (
-    "     add a case that the changed rule judges differently: for a number, with a value between the two numbers"
+    "     add a case that the changed SQL decides differently: for a number, with a value between the two numbers\n"
+    "     if no case can, another part of the SQL decides already: leave this one out"
 )
 _PLACE_ADVICE: Final = "     #2 and so on: another place of the SQL with the same words"
 SURVIVORS_FILE: Final = "survivors.toml"

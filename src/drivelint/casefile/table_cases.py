@@ -38,6 +38,7 @@ from drivelint.casefile.merged_cases import NumberedCase, merge_cases
 from drivelint.casefile.scene import Row, case_database, complete_table_scene, insert_rows, rows_of_blocks
 from drivelint.catalogue.check import error_message, raise_problems
 from drivelint.errors import RuleError
+from drivelint.phrases import nearest_word
 from drivelint.sql import declarations, syntax
 from drivelint.sql.statements import statement, statement_texts
 
@@ -78,9 +79,14 @@ def cases_file(table: LibraryTable) -> Path:
 
 
 def tables_read_by(table: LibraryTable) -> frozenset[str]:
-    """Return all tables that the SELECT of a table reads."""
+    """Return all tables that the SELECT of a table reads. Errors: `RuleError` for one that there is not."""
     tree = syntax.parse_select(table.select, str(table.path))
-    return syntax.tables_read(tree) & declarations.column_comments().keys()
+    known = declarations.column_comments().keys()
+    if unknown := sorted(syntax.tables_read(tree) - known):
+        near = nearest_word(unknown[0], known)
+        instead = f"did you mean {near!r}?" if near else "drivelint docs dictionary prints all"
+        raise RuleError(f"{table.path}: there is no table {unknown[0]!r}: {instead}")
+    return syntax.tables_read(tree)
 
 
 def read_table_cases(table: LibraryTable) -> list[CompleteCase]:

@@ -152,9 +152,10 @@ def _worst_first_key(row: Row) -> tuple[Any, ...]:
 
 
 def _other_verdicts(row: Row, verdicts: Iterable[Row]) -> list[Row]:
+    """Return the other verdicts of the rule in the drive, worst first."""
     keys = ("ego_id", "profile", "object_id", "t_start_ns", "verdict")
     mine = [v for v in verdicts if v["drive_id"] == row["drive_id"] and v["rule_id"] == row["rule_id"] and v is not row]
-    return [{key: v[key] for key in keys} for v in mine]
+    return [{key: v[key] for key in keys} for v in sorted(mine, key=_worst_first_key)]
 
 
 def _rule_of_name(name: str, rules: Sequence[str], n_findings: int) -> str:

@@ -57,6 +57,10 @@ _SECTION_BY_REASON_CODE: Final = {
 }
 _NULL_MEANS_NONE: Final = re.compile(r"NULL: (?:none|no |never)(?!.*known)")
 """Matches the comment of a column in which NULL is a known answer: there is none."""
+_LACKING_VALUES: Final[dict[str, bool | None]] = {"NULL": None, "no": False}
+"""Word -> the value of a column by which a row tells that something is not known; `no` only of `_TELLS_WHETHER_KNOWN`."""
+_TELLS_WHETHER_KNOWN: Final = re.compile(r"(?:^|_)(?:known|seen)$")
+"""Matches the name of a column that tells whether something is known."""
 _REASONS_NOT_TO_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
     "outside_conditions": "the rule applies only in other conditions",
@@ -167,27 +171,42 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
 def _sql_lines(explanation: Explanation) -> list[str]:
     if lacks_signal(explanation.verdict):
         return []
-    null_columns = {column for columns in _null_columns_by_table(explanation).values() for column in columns}
+    columns_by_value = {
+        word: {column for columns in _columns_with_value(explanation, value).values() for column in columns}
+        for word, value in _LACKING_VALUES.items()
+    }
     lines = (line for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines()))
-    return [f"|{line}{_null_note(line, null_columns)}" for line in lines]
+    return [f"|{line}{_note_on_line(line, columns_by_value)}" for line in lines]
 
 
-def _null_note(line: str, null_columns: Collection[str]) -> str:
-    """Return a comment for the end of a line of SQL that names columns without a value; '' for another line."""
+def _note_on_line(line: str, columns_by_value: Mapping[str, Collection[str]]) -> str:
+    """Return a comment for the end of a line of SQL that names columns that tell what is not known; '' for another line."""
     code = "" if line.lstrip().startswith("GROUP BY") else line.partition("--")[0]
-    named = sorted(column for column in null_columns if re.search(rf"\b{column}\b", code))
-    return f"  -- NULL here: {', '.join(named)}" if named else ""
+    notes = {
+        word: sorted(column for column in columns if re.search(rf"\b{column}\b", code))
+        for word, columns in columns_by_value.items()
+    }
+    said = "; ".join(f"{word} here: {', '.join(columns)}" for word, columns in notes.items() if columns)
+    return f"  -- {said}" if said else ""
 
 
-def _null_columns_by_table(explanation: Explanation) -> dict[str, list[str]]:
-    """Return, for an unknown verdict, table -> columns that the rule's SQL names and that are not known in a row that is shown."""
+def _columns_with_value(explanation: Explanation, lacking: bool | None) -> dict[str, list[str]]:
+    """Return, for an unknown verdict, table -> columns that the rule's SQL names and that tell what is not known in a row that is shown.
+
+    `lacking`: None for columns that are NULL, False for columns such as `known` and `begin_seen` that are false.
+    """
     if explanation.verdict["verdict"] != "unknown" or lacks_signal(explanation.verdict):
         return {}
     sql = "\n".join(explanation.sql.values())
     found: dict[str, list[str]] = {}
     for table, rows, *_ in explanation.rows:
         comments = declarations.column_comments().get(table, {})
-        empty = dict.fromkeys(column for row in rows for column, value in row.items() if value is None)
+        empty = dict.fromkeys(
+            column
+            for row in rows
+            for column, value in row.items()
+            if value is lacking and (lacking is None or _TELLS_WHETHER_KNOWN.search(column))
+        )
         named = [c for c in empty if re.search(rf"\b{c}\b", sql) and not _NULL_MEANS_NONE.search(comments.get(c, ""))]
         if named and table != "profile":  # the numbers of a profile are chosen, not recorded
             found[table] = named
@@ -199,8 +218,9 @@ def _null_sentences(explanation: Explanation) -> list[str]:
     section = _SECTION_BY_REASON_CODE.get(explanation.verdict["reason_code"])
     first = [f"The SELECT below that gives no value: @{section}."] if section in explanation.sql else []
     return first + [
-        f"NULL in {table}{f' ({library_tables()[table].short_path})' if table in library_tables() else ''}: {', '.join(columns)}."
-        for table, columns in _null_columns_by_table(explanation).items()
+        f"{word} in {table}{f' ({library_tables()[table].short_path})' if table in library_tables() else ''}: {', '.join(columns)}."
+        for word, value in _LACKING_VALUES.items()
+        for table, columns in _columns_with_value(explanation, value).items()
     ]
 
 

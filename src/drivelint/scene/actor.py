@@ -136,6 +136,8 @@ class Actor:
             turned = math.radians(heading)
             return ActorPath.through_points(np.array([x, x + math.cos(turned)]), np.array([y, y + math.sin(turned)]))
         if text.path:
+            if len(text.path) < 2:
+                raise UsageError(f"actor {self.name}: a path needs at least two points; a standing actor has a place")
             x, y = np.array(text.path, float).T
             return ActorPath.through_points(*_dense_points(x, y))
         return path_along_lanes(self.roads, self._lanes_of_route())

@@ -24,9 +24,11 @@ if TYPE_CHECKING:
 Side = Literal["left", "right"]
 Arm = Literal["west", "north", "east", "south"]
 Numbers = list[float]
-Knots = float | list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
+Pair = Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]
+Triple = Annotated[Numbers, msgspec.Meta(min_length=3, max_length=3)]
+Knots = float | Annotated[list[Pair], msgspec.Meta(min_length=1)]
 """A constant number, or [second, number] pairs."""
-Spans = list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
+Spans = list[Pair]
 """[first second, last second] of each span."""
 
 
@@ -66,9 +68,9 @@ class RoadThing(_StrictMapping, frozen=True):
 class RoadEntry(_StrictMapping, frozen=True):
     """A road: a line, and lanes on both sides of it."""
 
-    line: list[float | Numbers] = msgspec.field(default_factory=lambda: [1000.0])
+    line: Annotated[list[float | Numbers], msgspec.Meta(min_length=1)] = msgspec.field(default_factory=lambda: [1000.0])
     """Pieces: metres of a straight, or [metres, radius]; a positive radius turns left, as drawn."""
-    start: Numbers | None = None
+    start: Triple | None = None
     """x, y and heading in degrees of the road's start; None: the end of the road `after`, or else the origin, to the east."""
     after: str | None = None
     """The road that this road continues, lane by lane."""
@@ -147,7 +149,7 @@ class RecorderFaults(_StrictMapping, frozen=True):
     """When the recorded position stays the same, although the recorded speed continues."""
     swapped: bool = False
     """Length and width are exchanged."""
-    shift: list[Numbers] = []
+    shift: list[Annotated[Numbers, msgspec.Meta(min_length=4, max_length=4)]] = []
     """[first second, last second, metres ahead, metres to the left]: the position is shifted."""
     unknown: list[Literal["speed", "heading", "size", "width", "class"]] = []
 
@@ -162,11 +164,11 @@ class ActorEntry(_StrictMapping, frozen=True):
     """A road and the number of a lane: `main 1`."""
     route: list[str] = []
     """Successive lanes; the turns through junctions are added."""
-    path: list[Numbers] = []
+    path: list[Pair] = []
     """Points [x, y], with straight lines between them."""
-    track: list[Numbers] = []
+    track: list[Triple] = []
     """Points [second, x, y], with smooth motion between them."""
-    place: Numbers | None = None
+    place: Triple | None = None
     """x, y and heading in degrees of a standing actor."""
     from_: float = 0.0
     """Position of the middle of its box at second 0, in metres along its path."""
@@ -185,7 +187,7 @@ class ActorEntry(_StrictMapping, frozen=True):
     """off, on, strong or unknown; None: derived from its deceleration."""
     height: float | None = None
     """Height of the ground under the actor, in metres; None: the height of its road."""
-    there: list[float] | None = None
+    there: Pair | None = None
     """First and last second of the actor in the log; None: all seconds."""
     faults: RecorderFaults = RecorderFaults()
 
@@ -198,8 +200,8 @@ class SceneEntry(_StrictMapping, frozen=True, kw_only=True):
     roads: str
     traffic: Side | None = None
     """Replaces the value of the layout."""
-    seconds: float = 20.0
-    rate: float = 10.0
+    seconds: Annotated[float, msgspec.Meta(gt=0)] = 20.0
+    rate: Annotated[float, msgspec.Meta(gt=0)] = 10.0
     conditions: dict[str, str] = msgspec.field(default_factory=dict, name="given")
     """Conditions of the drive. Dry weather and daylight are the default; the value `unknown` removes a condition."""
     lights: dict[str, list[tuple[float, str]]] = {}

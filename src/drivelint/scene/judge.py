@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 
     from drivelint.catalogue import Rule
+    from drivelint.result.model import Result
     from drivelint.scene.document import SceneEntry
     from drivelint.scene.scene import Scene
 
@@ -59,9 +60,10 @@ class Expectation(NamedTuple):
 
 
 class VerdictsOfScenes(NamedTuple):
-    """The rows of verdicts of some scenes, by scene and rule."""
+    """The rows of verdicts of some scenes, by scene and rule; and why a log could not be judged, by scene."""
 
     rows: Mapping[Key, Sequence[Row]]
+    refusals: Mapping[str, str]
 
     def verdict(self, key: Key) -> str:
         """Return the verdict of a rule on a scene: the worst verdict of its rows."""
@@ -74,8 +76,10 @@ class VerdictsOfScenes(NamedTuple):
         return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
 
     def reasons_text(self, key: Key) -> str:
-        """Return the reasons, as sentences, of the rows with the worst verdict."""
+        """Return the reasons, as sentences, of the rows with the worst verdict, or why the log could not be judged."""
         worst = self.verdict(key)
+        if worst == NOT_JUDGED:
+            return self.refusals.get(key[0], "the rule was not run")
         return "; ".join(sorted({row["reason"] for row in self.rows.get(key, ()) if row["verdict"] == worst}))
 
 
@@ -112,16 +116,23 @@ def judge_scenes(
         profiles=("nominal", "observed"),
         robustness=False,
     )
+    results: list[Result] = []
     try:
-        rows = check(options, Silent()).verdicts.to_pylist()
-    except TraceError:  # no scene could be judged
-        rows = []
+        results.append(check(options, Silent(), on_nothing_judged=results.append))
+    except TraceError:
+        if not results:
+            raise
     rows_by_key: dict[Key, list[Row]] = defaultdict(list)
     names = {scene.name for scene in scenes}
-    for row in rows:
+    for row in results[0].verdicts.to_pylist():
         drive = row["drive_id"]
         rows_by_key[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
-    return VerdictsOfScenes(rows_by_key)
+    refusals = {
+        drive["file_name"]: drive["status_reason"].removeprefix(f"{folder / drive['file_name']}: ")
+        for drive in results[0].drives.to_pylist()
+        if drive["status"] == "not_judged"
+    }
+    return VerdictsOfScenes(rows_by_key, refusals)
 
 
 def differences(scene: Scene, verdicts: VerdictsOfScenes, gating: Container[str]) -> Iterator[str]:

@@ -25,6 +25,9 @@ _FILE: Final = re.compile(
 TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
 """How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
 one part of a drive are judged. `run`: until the end of the run."""
+QUANTITIES: Final = ("position", "heading", "velocity", "size", "class", "existence", "identity")
+"""The quantities of an actor that a check of the log can doubt: what the end of a column's comment may name."""
+_COLUMN_WITH_QUANTITIES: Final = re.compile(r"^    (\w+) .* -- .*\{([^{}\n]*)\}\s*$", re.MULTILINE)
 _UNCOMMENTED_COLUMN: Final = re.compile(r"^    (\w+) (?!.* -- \S)", re.MULTILINE)
 
 
@@ -74,5 +77,10 @@ def _read_file(file: Path) -> LibraryTable:
         raise DriveLintError(
             f"{file}: column {bare[1]} has no comment: write `-- ` and what it is after it, on the same line"
         )
+    for column, quantities in _COLUMN_WITH_QUANTITIES.findall(found[2]):
+        if unknown := sorted(set(quantities.split(", ")).difference(QUANTITIES)):
+            raise DriveLintError(
+                f"{file}: column {column}: {unknown[0]!r} is no quantity of an actor: known are {', '.join(QUANTITIES)}"
+            )
     description = " ".join(line.removeprefix("--").strip() for line in found[1].splitlines())
     return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[6])

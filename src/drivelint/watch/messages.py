@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.result.text import breach_title
 from drivelint.watch.settled import IDENTIFYING_VERDICT_COLUMNS, OTHER_REPORTED_VERDICT_COLUMNS
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def alarm(alarm: Alarm, rule: Rule, drive_start_ns: int) -> Message:
         "alarm": alarm.number,
         "rule_id": rule.id,
         "title": rule.title,
+        "breach": breach_title({"breach": rule.breach, "title": rule.title}),
         "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns),
         "said_s": _seconds_since_start(alarm.said_ns, drive_start_ns),
         "latency_s": round(alarm.latency_s, 6),

@@ -36,6 +36,7 @@ _ALARM_FIELDS: Final = {
     "type": ("string", "alarm"),
     "alarm": ("integer", "its number in this watch"),
     "title": ("string", "what the rule demands"),
+    "breach": ("string", "what happened instead"),
     "t_s": ("number", "when the rule was broken, seconds since the log's first step"),
     "said_s": ("number", "when it was printed"),
     "latency_s": ("number", "seconds of the log between both"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.engine.robustness.copies import MeasurementErrors
+from drivelint.phrases import ego_name
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.margin_series import margin_series
@@ -256,7 +257,7 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
     order = sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
     return [
         {
-            "name": f"{'object' if is_object else 'ego'} {who}",
+            "name": f"object {who}" if is_object else ego_name(who),
             "what": _actor_class_words(seen[who]),
             "sized": next((a for a in seen[who] if None not in {a["length_m"], a["width_m"]}), None),
             "speeds": [a["speed_mps"] for a in seen[who] if a["speed_mps"] is not None],
