@@ -177,6 +177,19 @@ def test_the_distance_to_an_empty_shape_is_still_0_in_this_duckdb() -> None:
         assert database().execute(f"SELECT ST_Distance({empty}, ST_Point(50, 0))").fetchall() == [(0.0,)]
 
 
+def test_no_statement_moves_a_shape_by_its_height() -> None:
+    """`ST_Translate` of DuckDB 1.5.5 moves each point by its height times the shift, and turns a height as shift into metres along x.
+
+    `ST_Affine` with six numbers is right. Source: seen with duckdb 1.5.5 (findings/duckdb-spatial-moved-by-height.sh).
+    """
+    texts = [*folder("queries").rglob("*.sql"), *(ROOT / "src").rglob("*.py")]
+    assert len(texts) > 100
+    assert [path for path in texts if "st_translate" in path.read_text(encoding="utf-8").lower()] == []
+    shape = "ST_GeomFromText('POINT Z (1 2 6)')"
+    moves = f"ST_AsText(ST_Translate({shape}, 0.5, 0)), ST_AsText(ST_Affine({shape}, 1, 0, 0, 1, 0.5, 0))"
+    assert database().execute(f"SELECT {moves}").fetchone() == ("POINT Z (4 2 6)", "POINT Z (1.5 2 6)")
+
+
 @given(pairs)
 @settings(max_examples=30, deadline=None)
 def test_shapes_meet_as_duckdb_says(found: list[tuple[Box, Box]]) -> None:

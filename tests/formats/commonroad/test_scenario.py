@@ -65,6 +65,21 @@ def test_velocity_lies_along_the_heading_and_its_slip_angle(tmp_path: Path) -> N
     assert (row["vx_mps"], row["vy_mps"]) == pytest.approx((10 * math.cos(0.6), 10 * math.sin(0.6)))
 
 
+def test_indicators_of_a_scenario_are_not_known(tmp_path: Path) -> None:
+    """The converter of CommonRoad writes indicators that are off for drone recordings, which have none: no lane change is blamed for them.
+
+    Source: seen with commonroad-dataset-converter 2025.1.0 (findings/commonroad-highd-indicators-off.sh).
+    """
+    off = "<indicatorLeft>false</indicatorLeft><indicatorRight>false</indicatorRight>"
+    lights = [f"<time><exact>{t}</exact></time>{off}" for t in range(20)]
+    series = "".join(f"<signalState>{light}</signalState>" for light in lights[1:])
+    text = moving().replace("<trajectory>", f"<initialSignalState>{lights[0]}</initialSignalState><trajectory>")
+    text = text.replace("</trajectory>", f"</trajectory><signalSeries>{series}</signalSeries>")
+    trace = read(write(tmp_path, text), ego="1")
+    assert log(trace)["n_states"] == 20
+    assert {at(trace, "1", k / 10)["indicator"] for k in range(20)} == {None}
+
+
 def test_intervals_are_not_known(tmp_path: Path) -> None:
     unsure = "<orientation><intervalStart>0</intervalStart><intervalEnd>1</intervalEnd></orientation>"
     inner = (
