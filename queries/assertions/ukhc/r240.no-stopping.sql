@@ -21,9 +21,9 @@
 -- why = "our default: shorter is a pause in traffic"
 --
 -- [params.near_m]
--- default = 10.0
+-- default = 30.0
 -- unit = "m"
--- why = "our default: an ego that stands closer than this behind another vehicle stands because of it"
+-- why = "our default, as in stvo.ri1: an ego that stands closer than this behind another vehicle stands because of it; at the tail of a queue on a motorway many leave a lorry's length and more"
 --
 -- [params.hazard_m]
 -- default = 30.0
