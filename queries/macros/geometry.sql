@@ -110,6 +110,13 @@ CREATE OR REPLACE MACRO swerve_mps2() AS 8.0;
 -- brisk start), then brakes as hard as tyres allow. After the last sample of a stretch (v_next is NULL), the result is v.
 CREATE OR REPLACE MACRO peak_between_mps(v_mps, v_next_mps, dt_s) AS
     greatest(v_mps, (swerve_mps2() * v_mps + 3.5 * v_next_mps + dt_s * 3.5 * swerve_mps2()) / (3.5 + swerve_mps2()));
+-- The least speed that a vehicle can have had between two samples with the speeds v and v_next: it brakes as hard as tyres allow, then
+-- starts briskly. One of the two speeds may be NULL: not known.
+CREATE OR REPLACE MACRO trough_between_mps(v_mps, v_next_mps, dt_s) AS
+    greatest(0.0, CASE
+        WHEN v_next_mps IS NULL THEN v_mps - swerve_mps2() * dt_s
+        WHEN v_mps IS NULL THEN v_next_mps - 3.5 * dt_s
+        ELSE least(v_mps, v_next_mps, (3.5 * v_mps + swerve_mps2() * v_next_mps - dt_s * 3.5 * swerve_mps2()) / (3.5 + swerve_mps2())) END);
 -- Upper bound of a speed that is not known.
 CREATE OR REPLACE MACRO unknown_speed_mps() AS 40.0;
 -- The least and the greatest distance that a vehicle with the speed v drives in the t seconds after, or before. It brakes or accelerates by

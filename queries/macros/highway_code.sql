@@ -35,11 +35,12 @@ CREATE OR REPLACE MACRO most_mean_mps(total_s, gone_s, gone_m, v_mps, v_most_mps
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
     CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
 
--- Whether an actor may be passed over a line that must not be crossed (UKHC R129): standing vehicles and objects, and cyclists and horses
--- at 10 mph or less.
+-- Whether an actor may be passed over a line that must not be crossed (UKHC R129): standing vehicles and objects, and cyclists, horses and
+-- works vehicles at 10 mph or less. A lorry, van or vehicle of unknown kind that is as slow as that may be a works vehicle: NULL.
 CREATE OR REPLACE MACRO may_be_passed_over_solid_line(actor_class, length_m, speed_mps) AS
     (is_vehicle(actor_class) OR is_class(actor_class, 'object')) AND speed_mps <= standing_mps()
-    OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
+    OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704
+    OR CASE WHEN actor_class IN ('truck', 'van', 'vehicle') AND speed_mps <= 4.4704 THEN NULL ELSE false END;
 
 -- Room to leave beside a passed actor: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
 CREATE OR REPLACE MACRO passing_room_m(actor_class) AS CASE actor_class WHEN 'animal' THEN 2.0 WHEN 'bicycle' THEN 1.5 ELSE 1.0 END;

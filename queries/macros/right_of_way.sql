@@ -49,3 +49,8 @@ CREATE OR REPLACE MACRO braked_reason(object_id, pet_s, decel_mps2, other_cause)
 
 -- The reason if it is not known whether the rule is about an actor.
 CREATE OR REPLACE MACRO class_doubt(object_id) AS CASE WHEN object_id IS NOT NULL THEN why('class_unknown', {'object_id': object_id}) END;
+
+-- Whether the ego stands at a stop line because it must: before a stop or give-way sign, or a light that was not green when the ego stopped.
+-- NULL: the light, or what governs the line, is not known.
+CREATE OR REPLACE MACRO waits_at_line(stop_line_id, control, state) AS
+    CASE WHEN stop_line_id IS NULL OR state = 'green' THEN false WHEN control IN ('stop', 'give_way') OR forbids(state) OR state = 'amber' THEN true END;

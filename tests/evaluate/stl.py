@@ -161,7 +161,7 @@ def _restored(low: float, high: float) -> Callable[[Dice, int], Trace]:
 def _clear(dice: Dice, at: int) -> Trace:
     clear = walk(dice, -0.5, 2.5)
     given = {
-        "cut_in": {"t_s": _t(at), "object_id": "b", "gap_m": 100, "ego_speed_mps": 20, "speed_mps": 20, "side": "left"},
+        "cut_in": {"t_s": _t(at), "object_id": "b", "gap_m": 100, "ego_speed_mps": 20, "speed_mps": 19, "side": "left"},
         "ego_state": _steps(speed_mps=20),
         "pair": _steps(object_id="b", clearance_m=clear, clearance_is_bound=False),
     }

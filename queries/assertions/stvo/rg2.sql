@@ -13,7 +13,7 @@
 -- observes = "acceleration"
 -- near_margin = 0.2
 -- tags = ["excuses"]
--- reads = ["clock", "ego_mode", "ego_motion", "ego_state", "in_way", "lead"]
+-- reads = ["clock", "data_log", "ego_mode", "ego_motion", "ego_state", "in_way", "lanelet", "lead"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -56,19 +56,25 @@
 -- [reasons.peak_beyond_limit_flattened]
 -- says = "the filter against noise may have flattened a peak beyond the limit"
 -- advice = "no better recording can decide this"
+--
+-- [reasons.braked_to_leave]
+-- says = "the ego braked on a lane of type {lane_type}, which is there to slow down on"
+-- advice = "a person must judge whether it braked harder than the ramp demands"
 
 -- @condition
 -- The filter of the acceleration flattens peaks: the true deceleration may be harder than the filtered one by accel_peak_mps2.
 SELECT m.drive_id, m.ego_id, m.t_ns, -peak_sure_at_most(-m.accel_mps2, m.accel_peak_mps2, $abrupt_mps2) AS observed, -$abrupt_mps2 AS required, m.accel_error_mps2 AS error,
     -- Braking has a reason if the vehicle ahead is too near, was too near a moment ago, or brakes itself, and also if anybody else is in
     -- the way (a person, an animal, a thing). At a step without a row in `lead`, there may be such a vehicle. Why hazard lights were on, or
-    -- an emergency was declared, a person must judge.
+    -- an emergency was declared, or how hard the bend of a ramp makes who leaves brake, a person must judge.
     is_judged(m.accel_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AND NOT (m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 AND (
         CASE WHEN l.t_ns IS NOT NULL THEN l.object_id IS NOT NULL AND (
             l.is_too_near OR m.accel_mps2 - l.hardest_mps2 >= -$abrupt_mps2 OR CASE WHEN l.known THEN false END) END
+        OR CASE WHEN coalesce(n.lane_type IN ('exit', 'offRamp', 'mwyExit', 'connectingRamp'), false) THEN NULL ELSE false END
         OR asks_to_brake(w.need_mps2, w.known, $abrupt_mps2)
         OR CASE WHEN coalesce(e.indicator = 'hazard', false) OR emergency.t_ns IS NOT NULL THEN NULL ELSE false END)) AS applies,
-    CASE WHEN m.accel_mps2 >= -$abrupt_mps2 AND m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 THEN why('peak_beyond_limit_flattened') END AS reason
+    CASE WHEN m.accel_mps2 >= -$abrupt_mps2 AND m.accel_mps2 - m.accel_peak_mps2 < -$abrupt_mps2 THEN why('peak_beyond_limit_flattened')
+        WHEN m.accel_mps2 < -$abrupt_mps2 AND n.lane_type IN ('exit', 'offRamp', 'mwyExit', 'connectingRamp') THEN why('braked_to_leave', {'lane_type': n.lane_type}) END AS reason
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
 LEFT JOIN (
@@ -82,3 +88,5 @@ LEFT JOIN ego_state e ON e.drive_id = m.drive_id AND e.ego_id = m.ego_id AND e.t
 LEFT JOIN (
     SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
 ) emergency ON emergency.drive_id = m.drive_id AND emergency.ego_id = m.ego_id AND emergency.t_ns = m.t_ns
+LEFT JOIN data_log g ON g.drive_id = m.drive_id
+LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id

@@ -13,7 +13,7 @@
 -- observes = "speed"
 -- exempt_after_s = "settle_s"
 -- merge_gap_s = 5.0
--- reads = ["ego_condition", "ego_mode", "ego_state", "in_way", "lead", "neighbour"]
+-- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "in_way", "lanelet", "lead", "neighbour"]
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [applies]
@@ -60,8 +60,9 @@ SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed,
     -- A slow vehicle ahead is a reason to drive slowly if it is near enough to matter at the speed limit. At a step without a row in
     -- `lead`,
     -- there may be such a vehicle. A person, an animal or a thing in the way is a reason, too, and so is a slow vehicle in the lane beside
-    -- (StVO 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice.
-    CASE WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
+    -- (StVO 7(2a)). An ego that speeds up from a standstill, or declares a minimal risk manoeuvre, does not hinder by choice. Who
+    -- leaves the motorway slows down on the exit lane, as it is meant for, and who comes in speeds up on the entry.
+    CASE WHEN n.lane_type IN ('entry', 'onRamp', 'mwyEntry', 'exit', 'offRamp', 'mwyExit', 'connectingRamp') THEN false WHEN e.has_stood AND e.speed_mps > standing_mps() OR r.is_on OR b.t_ns IS NOT NULL OR NOT may_be_vehicle(w.actor_class) THEN false
         WHEN l.t_ns IS NOT NULL THEN (
             l.object_id IS NULL OR l.speed_mps > c.most_mps OR l.gap_m > lead_reach_m(c.most_mps + $slower_mps)
             OR CASE WHEN c.limit_mps IS NOT NULL OR l.speed_mps <= e.speed_mps AND l.gap_m <= lead_reach_m(e.speed_mps + $slower_mps) THEN false END
@@ -92,3 +93,5 @@ LEFT JOIN (
         AND n.speed_mps <= least(c.limit_mps, $desired_mps, CASE WHEN c.limit_mps IS NULL THEN coalesce(n.ego_speed_mps, 0.0) + $slower_mps END) - $slower_mps
 ) b USING (drive_id, ego_id, t_ns)
 LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') r USING (drive_id, ego_id, t_ns)
+LEFT JOIN data_log g ON g.drive_id = e.drive_id
+LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = e.lanelet_id

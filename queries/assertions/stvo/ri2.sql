@@ -42,6 +42,10 @@
 -- [reasons.broad_line_unknown]
 -- says = "the ego was on a lane of type {lane_type}: it is not known whether a broad line separated it from the through lanes"
 --
+-- [reasons.passed_standing]
+-- says = "{object_id} stood, and it is not known whether it waited in a queue, which would make it traffic, or had broken down"
+-- advice = "a person must judge this"
+--
 -- [reasons.log_ends_beside]
 -- says = "at the end of the log the ego was beside the other vehicle and no slower: it is not known whether the ego got ahead"
 
@@ -66,12 +70,14 @@ WHERE may_be_vehicle(p.actor_class) AND coalesce(p.ego_passes AND NOT p.same_lan
 
 -- @condition
 -- On an entry the ego may be faster than the through lanes. On an exit it may be faster, too, if a broad line lies between, which the map
--- may not show.
+-- may not show. To go past a vehicle that stands, but not because of the traffic, is not to overtake it: a standing vehicle without a queue
+-- may have broken down or work on the road.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type NOT IN ('entry', 'onRamp', 'connectingRamp'), true) AS applies,
     CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
         AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
-        OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) THEN false END END AS holds,
-    CASE WHEN r.is_cut_off THEN why('log_ends_beside') WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type}) END AS reason
+        OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) AND (r.speed_mps > standing_mps() OR q.n >= $queue_n) THEN false END END AS holds,
+    CASE WHEN r.is_cut_off THEN why('log_ends_beside') WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type})
+        WHEN r.speed_mps <= standing_mps() AND q.n < $queue_n THEN why('passed_standing', {'object_id': r.object_id}) END AS reason
 FROM reference r
 JOIN (
     SELECT b.ref_id, count(*) FILTER (other.is_in_queue) AS n,

@@ -17,9 +17,9 @@
 -- road_type = ["motorway"]
 --
 -- [params.reverse_mps]
--- default = 0.1
+-- default = 0.5
 -- unit = "m/s"
--- why = "our default: noise of a speed that is zero"
+-- why = "our default, as in ukhc.r263.no-reverse: slower than this is standing: recorded speeds of standing vehicles jitter"
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, e.with_traffic AND m.v_long_mps >= -$reverse_mps AS holds

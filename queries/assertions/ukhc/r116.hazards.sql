@@ -24,6 +24,15 @@
 -- why = "the limit of a dual carriageway without a lower one is 70 mph, 31.3 m/s"
 -- source = "UKHC R124"
 --
+-- [params.street_mps]
+-- default = 13.42
+-- unit = "m/s"
+-- why = "our default, 30 mph: a road whose kind is not known is no motorway if its limit is as low as this"
+--
+-- [reasons.motorway_unknown]
+-- says = "it is not known whether this road is a motorway"
+-- advice = "set it, such as --env road_type=rural"
+--
 -- [reasons.may_warn_here]
 -- says = "hazard lights are allowed as a warning on this road: a person must judge whether there was a hazard ahead"
 --
@@ -38,9 +47,11 @@ SELECT e.drive_id, e.ego_id, e.t_ns,
     -- On a road where hazard lights may warn others, a person must judge whether there was a hazard.
     CASE WHEN e.indicator <> 'hazard' OR e.speed_mps <= $rolling_mps THEN true
         WHEN e.indicator = 'hazard' AND e.speed_mps > $rolling_mps AND NOT coalesce(c.road_type = 'motorway', false)
-            AND (c.carriageway <> 'dual' OR c.limit_mps < $unrestricted_mps) THEN false END AS holds,
+            -- A motorway is a dual carriageway, and may have a lower limit.
+            AND (c.carriageway <> 'dual' OR c.limit_mps < $unrestricted_mps AND (c.road_type IS NOT NULL OR c.limit_mps <= $street_mps)) THEN false END AS holds,
     CASE WHEN e.indicator = 'hazard' AND (c.road_type = 'motorway' OR c.carriageway = 'dual' AND c.limit_mps >= $unrestricted_mps)
             THEN why('may_warn_here')
+        WHEN e.indicator = 'hazard' AND c.road_type IS NULL AND c.limit_mps < $unrestricted_mps AND c.limit_mps > $street_mps AND coalesce(c.carriageway = 'dual', true) THEN why('motorway_unknown')
         WHEN e.indicator = 'hazard' AND c.carriageway IS NULL THEN why('dual_carriageway_unknown')
         WHEN e.indicator = 'hazard' AND c.carriageway = 'dual' AND c.limit_mps IS NULL THEN why('carriageway_limit_unknown') END AS reason
 FROM ego_state e

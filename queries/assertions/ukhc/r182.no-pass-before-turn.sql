@@ -10,7 +10,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["beside", "junction_passage", "passing"]
+-- reads = ["beside", "conflict", "junction_passage", "lane_occupancy", "passing"]
 -- requires = ["map", "registration", "ego_size"]
 -- without_time = "the log does not show the ego on its way into the junction: begin recording before it"
 --
@@ -21,6 +21,10 @@
 --
 -- [reasons.got_ahead_of]
 -- says = "the ego got ahead of {object_id}"
+--
+-- [reasons.passed_in_its_lane]
+-- says = "the ego got ahead of {object_id}, which may have turned beside it in a lane of its own"
+-- advice = "a person must judge this"
 --
 -- [reasons.unplaced_beside]
 -- says = "an actor that may be beside the ego cannot be placed"
@@ -33,19 +37,26 @@ WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_f
 
 -- @condition
 SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
-    CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
+    CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork AND p.sure_id IS NOT NULL THEN false END ELSE true END AS holds,
     CASE WHEN r.across IS NULL THEN across_doubt(r.turn)
         WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_doubt()
-        WHEN p.t_ns IS NOT NULL THEN why('got_ahead_of', {'object_id': p.object_id})
+        WHEN p.sure_id IS NOT NULL THEN why('got_ahead_of', {'object_id': p.sure_id})
+        WHEN p.t_ns IS NOT NULL THEN why('passed_in_its_lane', {'object_id': p.object_id})
         WHEN b.t_ns IS NOT NULL THEN why('unplaced_beside') END AS reason
 FROM reference_step rs
 JOIN reference r USING (ref_id)
 LEFT JOIN (
-    SELECT drive_id, ego_id, t_ns, side, min(object_id) AS object_id
-    FROM passing
+    -- Where two lanes turn, one may move faster than the other (R163): a motor vehicle in a lane of its own is cut off only if the ego then
+    -- goes over its way.
+    SELECT p.drive_id, p.ego_id, p.t_ns, side, min(p.object_id) AS object_id,
+        min(p.object_id) FILTER (c.object_id IS NOT NULL OR same_lane OR o.t_ns IS NULL OR p.actor_class IN ('bicycle', 'animal')) AS sure_id
+    FROM passing p
+    LEFT JOIN (SELECT DISTINCT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) o ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
+    LEFT JOIN (SELECT drive_id, ego_id, object_id, max(t_ego_in_ns) AS t_last_ns FROM conflict WHERE ego_first GROUP BY ALL) c
+        ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.object_id = p.object_id AND c.t_last_ns >= p.t_ns
     -- The ego does not overtake people who walk beside the road: rule h2.turn-pedestrian is about people on foot.
-    WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true) AND actor_class IS DISTINCT FROM 'pedestrian'
-    GROUP BY drive_id, ego_id, t_ns, side
+    WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true) AND p.actor_class IS DISTINCT FROM 'pedestrian'
+    GROUP BY p.drive_id, p.ego_id, p.t_ns, side
 ) p
     ON p.drive_id = rs.drive_id AND p.ego_id = rs.ego_id AND p.t_ns = rs.t_ns AND p.side = r.side
 LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b

@@ -1,7 +1,7 @@
 -- title = "No passing in the zig-zags before a crossing"
 -- breach = "Passed in the zig-zags before a crossing"
 -- clause = "UKHC R191 and R165: you must not overtake the moving motor vehicle nearest the crossing, or the one that has stopped there to give way to people on foot, in the area marked by zig-zag lines; a parked one may be passed"
--- hypothesis = "When the ego went over a pedestrian crossing, had it passed no moving vehicle, and none that had stopped to give way, from the beginning of the zig-zags to the crossing?"
+-- hypothesis = "When the ego went over a pedestrian crossing, had it passed no moving vehicle that was the nearest to the crossing, and none that had stopped to give way, from the beginning of the zig-zags to the crossing?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "critical"
@@ -9,7 +9,7 @@
 -- status = "stable"
 -- law = ["gb"]
 -- sense = "holds"
--- reads = ["crossing_passage", "ego_state", "lane_occupancy", "passing", "road_user", "state_dynamics", "step"]
+-- reads = ["crossing_passage", "ego_state", "lane_occupancy", "pair", "passing", "road_user", "state_dynamics", "step"]
 -- requires = ["map", "registration", "ego_size"]
 -- without_time = "the log does not show the ego on its way onto the crossing: begin recording before it"
 --
@@ -27,6 +27,9 @@
 --
 -- [reasons.passed_before_crossing]
 -- says = "passed {object_ids} before crossing {crossing_id}"
+--
+-- [reasons.may_not_be_nearest]
+-- says = "it is not known whether {object_id}, which the ego passed, was the vehicle nearest to crossing {crossing_id}: another one ahead of it lacks a class or speed"
 --
 -- [reasons.may_have_given_way]
 -- says = "it is not known whether {object_id} stood before crossing {crossing_id} to give way"
@@ -71,15 +74,38 @@ passed_object AS (
         ON o.drive_id = p.drive_id AND o.actor_id = p.object_id AND o.t_ns = p.t_ns
     WHERE p.ego_passes IS DISTINCT FROM false AND may_be_vehicle(p.actor_class) AND is_bicycle(p.actor_class, a.length_m) IS DISTINCT FROM true
 ),
+-- A vehicle that moved and was nearer to the crossing than the one that the ego passed, in the ego's lane or another: only the nearest one
+-- must not be passed.
+nearer_vehicle AS (
+    SELECT r.ref_id, p.object_id, p.t_ns, bool_or(n.is_nearer) AS is_known
+    FROM reference r
+    JOIN step st USING (drive_id, ego_id, t_ns)
+    JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    JOIN pair v ON v.drive_id = p.drive_id AND v.ego_id = p.ego_id AND v.t_ns = p.t_ns AND v.object_id = p.object_id
+    JOIN pair o ON o.drive_id = p.drive_id AND o.ego_id = p.ego_id AND o.t_ns = p.t_ns
+    LEFT JOIN (SELECT DISTINCT drive_id, actor_id, t_ns FROM lane_occupancy WHERE drivable) d ON d.drive_id = o.drive_id AND d.actor_id = o.object_id AND d.t_ns = o.t_ns
+    CROSS JOIN LATERAL (
+        SELECT is_vehicle(o.actor_class) AND NOT is_bicycle(o.actor_class, o.length_m) AND o.speed_mps > standing_mps() AND abs(o.heading_diff_rad) < pi() / 4 AND d.t_ns IS NOT NULL
+            AND o.front_s_m > v.front_s_m AND o.front_s_m - e.front_s_m <= st.travel_m - p.travel_m AS is_nearer
+    ) n
+    WHERE n.is_nearer IS DISTINCT FROM false
+    GROUP BY r.ref_id, p.object_id, p.t_ns
+),
 pass_before_crossing AS (
     SELECT
         r.ref_id, p.object_id, p.is_seen,
-        CASE WHEN NOT p.is_standing THEN true WHEN p.is_standing AND NOT p.is_on_road THEN false
-            WHEN p.is_standing AND r.for_whom THEN CASE WHEN p.has_moved THEN true END
-            WHEN p.is_standing AND NOT r.for_whom THEN CASE WHEN NOT p.has_moved THEN false END END AS counts
+        -- A nearer actor of unknown class or speed may be such a vehicle.
+        CASE WHEN n.is_known THEN false WHEN n.ref_id IS NULL THEN w.counts END AS counts, n.ref_id IS NOT NULL AND n.is_known IS NULL AS may_not_be_nearest
     FROM reference r
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= st.travel_m - $zigzag_m
+    LEFT JOIN nearer_vehicle n ON n.ref_id = r.ref_id AND n.object_id = p.object_id AND n.t_ns = p.t_ns AND NOT p.is_standing
+    CROSS JOIN LATERAL (
+        SELECT CASE WHEN NOT p.is_standing THEN true WHEN p.is_standing AND NOT p.is_on_road THEN false
+            WHEN p.is_standing AND r.for_whom THEN CASE WHEN p.has_moved THEN true END
+            WHEN p.is_standing AND NOT r.for_whom THEN CASE WHEN NOT p.has_moved THEN false END END AS counts
+    ) w
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
     CASE WHEN bool_or(b.is_seen AND b.counts) THEN CASE WHEN bool_or(j.ref_id IS NULL) THEN false END WHEN st.travel_m >= $zigzag_m AND count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) = 0 THEN true END AS holds,
@@ -88,6 +114,8 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.kind <> 'other' AS applies,
         WHEN bool_or(b.is_seen AND b.counts) THEN why('passed_before_crossing', {
             'object_ids': string_agg(DISTINCT b.object_id, ', ' ORDER BY b.object_id) FILTER (b.is_seen AND b.counts), 'crossing_id': r.crossing_id
         })
+        WHEN bool_or(b.is_seen AND b.may_not_be_nearest)
+            THEN why('may_not_be_nearest', {'object_id': min(b.object_id) FILTER (b.is_seen AND b.may_not_be_nearest), 'crossing_id': r.crossing_id})
         WHEN bool_or(b.is_seen AND b.counts IS NULL)
             THEN why('may_have_given_way', {'object_id': min(b.object_id) FILTER (b.is_seen AND b.counts IS NULL), 'crossing_id': r.crossing_id})
         WHEN count(b.object_id) FILTER (b.counts IS DISTINCT FROM false) > 0

@@ -26,10 +26,12 @@ WHERE coalesce(kind, 'zebra') = 'zebra'
 -- @condition
 -- The ego need not give way to a person who steps onto the crossing when the ego is already on it.
 SELECT drive_id, ego_id, t_ns, ref_id,
-    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN CASE WHEN kind = 'zebra' THEN false END
+    CASE WHEN object_id IS NOT NULL AND t_on_ns < t_ns THEN CASE WHEN kind = 'zebra' THEN false END
+        WHEN object_id IS NOT NULL AND t_on_ns = t_ns THEN NULL
         -- The map tables have no islands: if a person comes from the other half, it is not known whether the ego had to give way.
         WHEN known AND coming_known AND coming_id IS NULL THEN true END AS holds,
-    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns
+    CASE WHEN object_id IS NOT NULL AND t_on_ns = t_ns THEN why('came_at_same_step', {'object_id': object_id})
+        WHEN object_id IS NOT NULL AND t_on_ns < t_ns
         THEN why(CASE WHEN kind IS NULL THEN 'was_on_crossing_of_unknown_kind' ELSE 'was_on_crossing' END, {'object_id': object_id})
         WHEN NOT known THEN why('person_unplaced')
         WHEN coming_id IS NOT NULL THEN why('came_over_maybe_island', {'object_id': coming_id})

@@ -52,7 +52,9 @@ GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.kn
 SELECT drive_id, ego_id, t_ns, ref_id,
     NOT forbids(CASE WHEN has_line THEN line_state ELSE state END)
         AND (coalesce(state IN ('green', 'amber'), false)
-            OR CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' OR forbids(state) THEN false END
+            OR CASE WHEN object_id IS NOT NULL AND t_on_ns < t_ns OR coming_id IS NOT NULL THEN CASE WHEN state = 'flashing' OR forbids(state) THEN false END
+                -- At the step at which both come, it is not known who was first.
+                WHEN object_id IS NOT NULL AND t_on_ns = t_ns THEN NULL
                 WHEN known AND coming_known THEN true END) AS holds,
     why(CASE WHEN has_line AND line_state IS DISTINCT FROM state
             THEN CASE WHEN line_state IS NULL THEN 'light_unknown_at_line' WHEN state IS NULL THEN 'light_unknown_at_crossing' ELSE 'light_changed' END

@@ -26,10 +26,11 @@ WHERE coalesce(kind, 'signalled') = 'signalled'
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, state = 'green' AS applies,
-    CASE WHEN object_id IS NOT NULL AND t_on_ns <= t_ns OR coming_id IS NOT NULL THEN false WHEN known AND coming_known THEN true END AS holds,
+    CASE WHEN object_id IS NOT NULL AND t_on_ns < t_ns OR coming_id IS NOT NULL THEN false WHEN object_id IS NOT NULL AND t_on_ns = t_ns THEN NULL WHEN known AND coming_known THEN true END AS holds,
     CASE WHEN state IS NULL THEN why(CASE WHEN kind IS NULL THEN 'crossing_kind_unknown' ELSE 'light_state_unknown' END)
-        WHEN object_id IS NOT NULL AND t_on_ns <= t_ns THEN why('was_on_crossing', {'object_id': object_id})
+        WHEN object_id IS NOT NULL AND t_on_ns < t_ns THEN why('was_on_crossing', {'object_id': object_id})
         WHEN coming_id IS NOT NULL THEN why('came_over', {'object_id': coming_id})
+        WHEN object_id IS NOT NULL AND t_on_ns = t_ns THEN why('came_at_same_step', {'object_id': object_id})
         WHEN NOT known THEN why('person_unplaced')
         WHEN NOT coming_known THEN why('other_half_unknown') END AS reason
 FROM reference

@@ -1,7 +1,7 @@
 -- title = "No stopping on a motorway"
 -- breach = "Stopped on a motorway"
 -- clause = "UKHC R240 and R271: you must not stop on the carriageway of a motorway, nor on a clearway, but in an emergency or when told to"
--- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody in its way?"
+-- hypothesis = "At every step on a motorway, had the ego not stood for long with nobody in its way, and no light or sign to wait at?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -21,9 +21,9 @@
 -- why = "our default: shorter is a pause in traffic"
 --
 -- [params.near_m]
--- default = 10.0
+-- default = 30.0
 -- unit = "m"
--- why = "our default: an ego that stands closer than this behind another vehicle stands because of it"
+-- why = "our default, as in stvo.ri1: an ego that stands closer than this behind another vehicle stands because of it; at the tail of a queue on a motorway many leave a lorry's length and more"
 --
 -- [params.hazard_m]
 -- default = 30.0
@@ -39,6 +39,10 @@
 -- says = "the ego stands with its hazard lights on, or at the end of a manoeuvre that it declared"
 -- advice = "a person must judge whether it was an emergency"
 --
+-- [reasons.may_wait_at_line]
+-- says = "the ego stands at a stop line: it is not known whether it had to wait there"
+-- advice = "record the state of the light"
+--
 -- [reasons.stands_and_unplaced]
 -- says = "the ego stands, and an actor that may be in its way cannot be placed"
 --
@@ -51,7 +55,7 @@
 -- @condition
 -- Clearways and zig-zags are not in the map tables. Crossings are judged by r191.no-stopping.
 WITH standstill_step AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, e.speed_mps, queue.stands_because_of_somebody IS NULL AS is_in_doubt,
+    SELECT e.drive_id, e.ego_id, e.t_ns, s.t_start_ns, s.begin_seen, waits_at_line(s.stop_line_id, s.control, s.state) AS waits, e.speed_mps, queue.stands_because_of_somebody IS NULL AS is_in_doubt,
         max(CASE WHEN e.indicator = 'hazard' OR m.t_ns IS NOT NULL THEN e.t_ns END) OVER standstill_so_far IS NOT NULL AS may_be_emergency,
         max(CASE WHEN queue.stands_because_of_somebody THEN e.t_ns END) OVER standstill_so_far AS t_queue_ns, max(CASE WHEN queue.stands_because_of_somebody IS NULL THEN e.t_ns END) OVER standstill_so_far AS t_doubt_ns
     FROM ego_state e
@@ -66,8 +70,12 @@ SELECT drive_id, ego_id, t_ns,
     CASE WHEN t_start_ns IS NULL THEN CASE WHEN speed_mps IS NOT NULL THEN true END
         -- The ego may go on a while after the vehicles ahead of it.
         WHEN t_ns - t_queue_ns <= ($stop_s * 1e9)::BIGINT OR begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN true
+        -- At the end of a slip road there may be a light or a sign.
+        WHEN waits THEN true
+        WHEN waits IS NULL THEN NULL
         WHEN t_ns - t_start_ns > ($stop_s * 1e9)::BIGINT AND (t_doubt_ns IS NULL OR t_ns - t_doubt_ns > ($stop_s * 1e9)::BIGINT) THEN CASE WHEN NOT may_be_emergency THEN false END END AS holds,
     CASE WHEN t_start_ns IS NOT NULL AND may_be_emergency THEN why('may_be_emergency')
+        WHEN t_start_ns IS NOT NULL AND waits IS NULL THEN why('may_wait_at_line')
         WHEN t_start_ns IS NOT NULL AND is_in_doubt THEN why('stands_and_unplaced')
         WHEN NOT begin_seen AND t_ns - t_start_ns <= ($stop_s * 1e9)::BIGINT THEN why('standstill_begin_unseen')
         WHEN t_start_ns IS NOT NULL THEN why('has_stood', {'stood_s': (t_ns - t_start_ns) / 1e9}) END AS reason

@@ -17,6 +17,7 @@ CREATE TABLE stop_line_crossing (
     amber_front_m DOUBLE,             -- distance from the ego's front to the line at the onset of the amber: of the amber in which it crossed, or of the one before the red; NULL: none seen {position, heading, size}
     amber_speed_mps DOUBLE,           -- speed of the ego at that onset {velocity}
     slowest_mps DOUBLE,               -- least speed of the ego with its front 0 to 3 m before the line, or at the last step before the line if none was there; NULL: never seen there, or the speed is not known {velocity}
+    least_mps DOUBLE,                 -- least speed that the ego may have had there, also between the steps, in a hole or before the log: it brakes by 8 m/s2 and starts by 3.5 m/s2 at most; NULL: no speed is known there {velocity}
     slowest_front_m DOUBLE,           -- distance from the ego's front to the line at that step {position, heading, size}
     stood_s DOUBLE                    -- longest time for which the ego stood (at most 0.1 m/s) with its front 0 to 1 m before the line, as far as seen; 0: it did not stand; NULL: the speed there is not known {position, velocity}
 );
@@ -46,12 +47,22 @@ crossing_interval AS (
     SELECT *, lag(t_ns, 1, -1) OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns) AS t_before_ns FROM crossing_step
 ),
 -- ---- the approach to the line
+ego_speed_step AS (
+    SELECT *, least(
+        -- A log may begin after the ego stood up to three metres before.
+        CASE WHEN lag(t_ns) OVER step_order IS NOT NULL THEN trough_between_mps(lag(speed_mps) OVER step_order, speed_mps, (t_ns - lag(t_ns) OVER step_order) / 1e9)
+            WHEN speed_mps ** 2 <= 2 * 3.5 * 3 THEN 0.0 ELSE speed_mps END,
+        CASE WHEN lead(t_ns) OVER step_order IS NOT NULL THEN trough_between_mps(speed_mps, lead(speed_mps) OVER step_order, (lead(t_ns) OVER step_order - t_ns) / 1e9) ELSE speed_mps END
+    ) AS least_mps
+    FROM ego_state
+    WINDOW step_order AS (PARTITION BY drive_id, ego_id ORDER BY t_ns)
+),
 approach_step AS (
-    SELECT c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, n.t_ns AS t_step_ns, n.k, n.seg, n.front_m, e.speed_mps, c.joined AND n.k = c.k - 1 AS is_last
+    SELECT c.drive_id, c.ego_id, c.chain_id, c.mark_id, c.s_start_m, c.t_ns, n.t_ns AS t_step_ns, n.k, n.seg, n.front_m, e.speed_mps, e.least_mps, c.joined AND n.k = c.k - 1 AS is_last
     FROM crossing_interval c
     JOIN stop_line_step n ON n.drive_id = c.drive_id AND n.ego_id = c.ego_id AND n.chain_id = c.chain_id AND n.mark_id = c.mark_id AND n.s_start_m = c.s_start_m
         AND n.t_ns < c.t_ns AND n.t_ns > c.t_before_ns
-    JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
+    JOIN ego_speed_step e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     WHERE n.front_m <= 0
 ),
 slowest_step AS (
@@ -62,6 +73,7 @@ slowest_step AS (
             min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (front_m >= -3 AND speed_mps IS NOT NULL),
             min({'speed_mps': speed_mps, 't_ns': t_step_ns, 'front_m': front_m}) FILTER (is_last AND speed_mps IS NOT NULL)
         ) AS slowest,
+        coalesce(min(least_mps) FILTER (front_m >= -3 AND speed_mps IS NOT NULL), min(least_mps) FILTER (is_last AND speed_mps IS NOT NULL)) AS least_mps,
         coalesce(bool_or(speed_mps IS NULL) FILTER (front_m >= -3), false) AS unknown_3m, coalesce(bool_or(speed_mps IS NULL) FILTER (front_m >= -1), false) AS unknown_1m
     FROM approach_step
     GROUP BY drive_id, ego_id, chain_id, mark_id, s_start_m, t_ns
@@ -106,6 +118,7 @@ SELECT
     l.state, l.state_before, l.t_state_ns, a.a.front_m AS amber_front_m, a.a.speed_mps AS amber_speed_mps,
     CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= standstill_mps() THEN s.slowest.speed_mps END AS slowest_mps,
     CASE WHEN NOT s.unknown_3m OR s.slowest.speed_mps <= standstill_mps() THEN -s.slowest.front_m END AS slowest_front_m,
+    s.least_mps,
     CASE WHEN d.stood_s IS NOT NULL AND NOT s.unknown_1m THEN d.stood_s WHEN NOT s.unknown_1m THEN 0.0 WHEN s.t_ns IS NULL THEN 0.0 END AS stood_s
 FROM crossing_step c
 JOIN way_mark m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.chain_id = c.chain_id AND m.mark_id = c.mark_id
