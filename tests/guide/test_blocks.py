@@ -210,7 +210,7 @@ def test_the_settings_of_the_ci_guide_are_taken(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_the_hooks_stop_a_commit(folder: Path) -> None:
-    (config,) = (b.body for b in blocks(FOLDER / "ci.md") if b.mark == "workflow: pre-commit")
+    (config,) = (b.body for b in blocks(FOLDER / "ready-made.md") if b.mark == "workflow: pre-commit")
     hooks: list[dict[str, Any]] = yaml.safe_load(config)["repos"][0]["hooks"]
     rules, drives = (hook["entry"] for hook in hooks)
     assert [bool(re.search(hook["files"], "drives/a.mcap")) for hook in hooks] == [False, True]
