@@ -166,10 +166,10 @@ step_near_passed AS (
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = r.object_id
     CROSS JOIN LATERAL (SELECT passing_mps(e.speed_mps, p.speed_mps, p.heading_diff_rad) AS closing_mps) c
-    -- Off the corridor, an object has only a distance.
+    -- Of an object of unknown size, the centre counts. Off the corridor, an object has only a distance.
     CROSS JOIN LATERAL (
         SELECT coalesce(
-            p.rear_s_m - e.front_s_m <= passing_before_m(c.closing_mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(c.closing_mps),
+            coalesce(p.rear_s_m, p.s_m) - e.front_s_m <= passing_before_m(c.closing_mps) AND e.rear_s_m - coalesce(p.front_s_m, p.s_m) <= passing_after_m(c.closing_mps),
             p.distance_m <= greatest(passing_before_m(e.speed_mps), passing_after_m(e.speed_mps))
         ) AS is_near
     ) d
