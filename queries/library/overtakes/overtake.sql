@@ -100,7 +100,7 @@ lost_ahead AS (
     GROUP BY ALL
     HAVING max(p.t_ns) < x.t_excursion_ns AND max({
         't_ns': p.t_ns,
-        'in_lane': abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m() AND p.s_m > e.s_m AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
+        'in_lane': in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) < pi() / 2
     }).in_lane
 ),
 -- The first of these steps after the object was ahead; later than the excursion if there is none. Objects that the log does not have during
