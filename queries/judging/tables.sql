@@ -10,7 +10,7 @@ CREATE OR REPLACE TEMP TABLE _segment AS
     FROM step s ASOF LEFT JOIN lost_time l ON l.drive_id = s.drive_id AND l.t_from_ns < s.t_ns GROUP BY ALL;
 CREATE OR REPLACE TEMP TABLE _rule (rule_no INTEGER, rule_id VARCHAR, rule_version VARCHAR, kind VARCHAR, severity VARCHAR,
     subtype VARCHAR, eventually BOOLEAN, merge_ns BIGINT, sense VARCHAR, unit VARCHAR, observes VARCHAR, near_margin DOUBLE, without_time VARCHAR, without_anchor VARCHAR,
-    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN, of_standing BOOLEAN, by_object BOOLEAN, limit_min_mps DOUBLE, limit_max_mps DOUBLE);
+    of_others BOOLEAN, of_hidden BOOLEAN, of_lanes BOOLEAN, of_contact BOOLEAN, of_standing BOOLEAN, by_object BOOLEAN, own_grid BOOLEAN, limit_min_mps DOUBLE, limit_max_mps DOUBLE);
 CREATE OR REPLACE TEMP TABLE _needs (rule_no INTEGER, pos INTEGER, signal VARCHAR, is_assumed BOOLEAN, may_be_unrecorded BOOLEAN);
 CREATE OR REPLACE TEMP TABLE _allowed (rule_no INTEGER, code VARCHAR, condition VARCHAR, word VARCHAR);
 CREATE OR REPLACE TEMP TABLE _error (rule_no INTEGER, drive_id VARCHAR, ego_id VARCHAR, code VARCHAR, reason VARCHAR);

@@ -43,6 +43,8 @@ CREATE OR REPLACE MACRO both_half_diagonals_m() AS 12.0;
 -- after it came into view.
 CREATE OR REPLACE MACRO longest_track_gap_ns() AS 2_500_000_000;
 CREATE OR REPLACE MACRO track_delay_ns() AS 500_000_000;
+-- Our default: an actor that was further from the ego than this just before its track began was not near (before_track).
+CREATE OR REPLACE MACRO near_before_track_m() AS 1.0;
 -- Error bound of a recorded position.
 CREATE OR REPLACE MACRO sight_error_m() AS 1.0;
 -- A lane is straight if its centre line deviates from its tangent by less than this: no object beside the lane is then between two points

@@ -269,6 +269,19 @@ def test_an_object_that_is_not_seen_behind_a_hole_is_lost_and_not_in_the_hole(
     assert brief(rows) == [("pass", "kept"), ("unknown", "log_hole")][: 1 + holes]
 
 
+@pytest.mark.parametrize("near_s", ["0..1 by 0.1", "3..4 by 0.1"])
+def test_an_object_that_a_rule_was_about_up_to_a_hole_is_not_left_unsaid_because_the_hole_ends_its_track(
+    tmp_path: Path, near_s: str
+) -> None:
+    """A rule with a section @applies has no row for lost objects; the danger space of a car that is not seen behind the hole passed."""
+    own = "SELECT drive_id, ego_id, t_ns, object_id FROM pair WHERE clearance_m < 2.5"
+    rule = write(tmp_path, INVARIANT | MEASURED | GAP, {"applies": own, "condition": GAP_SQL})
+    near = {"t_s": near_s, "object_id": "b", "clearance_m": 2}
+    rows = verdicts(rule, {"step": [{"t_s": "0..1 by 0.1"}, {"t_s": "3..4 by 0.1"}], "pair": near})
+    assert sorted(brief(rows)) == [("pass", "kept"), ("unknown", "log_hole")]
+    assert {(r["t_start_ns"], r["t_end_ns"]) for r in rows if r["verdict"] == "unknown"} == {(10**9, 3 * 10**9)}
+
+
 def pairs(o1: list[Any], o2: list[Any]) -> dict[str, Any]:
     times = [i / 10 for i in range(len(o1))]
     blocks = [

@@ -12,7 +12,7 @@
 -- observes = "distance between the two"
 -- near_margin = 0.2
 -- merge_gap_s = 2.0
--- reads = ["between_steps", "clearance_least", "clock", "ego_state", "hidden", "lost_object", "pair", "road_user", "state_dynamics"]
+-- reads = ["before_track", "between_steps", "clearance_least", "clock", "ego_state", "hidden", "hole_passing", "lost_object", "pair", "road_user", "state_dynamics"]
 -- requires = ["ego_size", "speeds"]
 --
 -- [params.least_m]
@@ -34,6 +34,12 @@
 -- default = 2.0
 -- unit = "s"
 -- why = "our default: this long before and after a contact, the distance belongs to the contact, which ukhc.no-collision judges"
+--
+-- [reasons.near_before_track]
+-- says = "object {object_id} is first seen here, going away from the ego: back at these speeds, it was nearer less than half a second before"
+--
+-- [reasons.passed_in_hole]
+-- says = "the ego and object {object_id} pass each other in a hole in the log of {hole_s:.1f} s, which begins here"
 --
 -- [reasons.nearness_between_steps]
 -- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
@@ -67,6 +73,17 @@ CROSS JOIN LATERAL (SELECT l.t_from_ns - 1 AS t_ns) last
 LEFT JOIN pair p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.object_id = l.object_id AND p.t_ns = last.t_ns
 LEFT JOIN ego_state e ON e.drive_id = l.drive_id AND e.ego_id = l.ego_id AND e.t_ns = h.t_ns
 WHERE h.least_m <= $near_m AND a.actor_class IS DISTINCT FROM 'object'
+UNION ALL
+-- An actor that is first seen while it goes away from the ego may have been nearer just before.
+SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, CASE WHEN e.speed_mps <= standing_mps() THEN false END, why('near_before_track', {'object_id': b.object_id})
+FROM before_track b
+JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
+LEFT JOIN ego_state e ON e.drive_id = b.drive_id AND e.ego_id = b.ego_id AND e.t_ns = b.t_ns
+WHERE b.least_m < $least_m AND a.actor_class IS DISTINCT FROM 'object'
+UNION ALL
+SELECT drive_id, ego_id, t_ns, object_id, NULL, why('passed_in_hole', {'object_id': object_id, 'hole_s': (t_next_ns - t_ns) / 1e9})
+FROM hole_passing
+WHERE actor_class IS DISTINCT FROM 'object'
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, $least_m AS required,

@@ -10,7 +10,7 @@
 -- sense = "<="
 -- unit = "m"
 -- observes = "distance of the front from the best place to stop, a quarter of a metre before the line"
--- reads = ["standstill"]
+-- reads = ["clock", "standstill"]
 -- requires = ["map", "registration", "ego_size", "stop_lines"]
 --
 -- [params.within_m]
@@ -39,8 +39,9 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, abs(s.stop_line_m - $within_m / 2
     CASE WHEN s.stop_line_m IS NOT NULL
         THEN why(CASE WHEN s.stop_line_m < 0 THEN 'stood_beyond_line' ELSE 'stood_before_line' END, {'front_m': abs(s.stop_line_m), 'within_m': $within_m}) END AS reason,
     -- The rule does not apply if the ego stood from the beginning of the log, stood behind another vehicle at the line, or had a green
-    -- light.
-    s.begin_seen AND s.stop_line_m <= $for_it_m AND s.state IS DISTINCT FROM 'green'
+    -- light. Of a stop that begins in a hole of the log it is not known whether the ego stopped for the line.
+    CASE WHEN s.begin_seen THEN true WHEN r.t_ns <= c.t_start_ns THEN false END AND s.stop_line_m <= $for_it_m AND s.state IS DISTINCT FROM 'green'
         AND CASE WHEN s.ahead_id IS NOT NULL THEN s.ahead_gap_m >= s.stop_line_m WHEN s.ahead_known THEN true END AS applies
 FROM reference r
 JOIN standstill s USING (drive_id, ego_id, occurrence)
+JOIN clock c USING (drive_id, ego_id)

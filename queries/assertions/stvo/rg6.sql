@@ -45,7 +45,8 @@ FROM lane_change
 -- @condition
 -- The ego comes over the line between t_start and the step before it: if the gap was too small then, it may have been at the line, too.
 SELECT drive_id, ego_id, t_ns, ref_id, object_id, safe_m AS required,
-    -- A vehicle that could not be placed may be nearer: then only a violation is certain.
+    -- A vehicle that could not be placed may be nearer: then only a violation is certain. If the ego came over the line in a hole of the log, it
+    -- is not known who was behind it then.
     CASE WHEN begin_seen AND (clear AND coalesce(follower_gap_before_m >= safe_m, true) OR follower_gap_m < safe_m) THEN follower_gap_m END AS observed,
-    CASE WHEN object_id IS NOT NULL THEN true WHEN clear THEN false END AS applies
+    CASE WHEN object_id IS NOT NULL THEN true WHEN clear AND begin_seen THEN false END AS applies
 FROM (SELECT *, stvo_safe_gap_m(follower_speed_mps, ego_speed_mps, $reaction_s, $brake_mps2, $brake_lead_mps2) AS safe_m FROM reference)

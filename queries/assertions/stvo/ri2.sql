@@ -48,11 +48,14 @@
 --
 -- [reasons.log_ends_beside]
 -- says = "at the end of the log the ego was beside the other vehicle and no slower: it is not known whether the ego got ahead"
+--
+-- [reasons.passed_unseen]
+-- says = "the ego passed object {object_id} after {from_ns}, unseen: it is not known how fast the two were then"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type, p.is_cut_off
+SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type, p.is_cut_off, p.t_unseen_ns
 FROM (
-    SELECT drive_id, ego_id, t_ns, object_id, actor_class, ego_passes, side, same_lane, speed_mps, ego_speed_mps, false AS is_cut_off
+    SELECT drive_id, ego_id, t_ns, object_id, actor_class, ego_passes, side, same_lane, speed_mps, ego_speed_mps, false AS is_cut_off, t_unseen_ns
     FROM passing
     UNION ALL BY NAME
     -- A pass that the end of the log cuts off.
@@ -73,10 +76,14 @@ WHERE may_be_vehicle(p.actor_class) AND coalesce(p.ego_passes AND NOT p.same_lan
 -- may not show. To go past a vehicle that stands, but not because of the traffic, is not to overtake it: a standing vehicle without a queue
 -- may have broken down or work on the road.
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.object_id, coalesce(r.lane_type NOT IN ('entry', 'onRamp', 'connectingRamp'), true) AS applies,
-    CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
+    -- Of a pass that was not seen it is not known how fast the two were then.
+    (CASE WHEN r.side IS NOT NULL THEN r.speed_mps <= $queue_mps AND r.ego_speed_mps - r.speed_mps <= $faster_mps
         AND CASE WHEN q.n >= $queue_n THEN true WHEN q.n_unknown = 0 THEN false END
-        OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) AND (r.speed_mps > standing_mps() OR q.n >= $queue_n) THEN false END END AS holds,
-    CASE WHEN r.is_cut_off THEN why('log_ends_beside') WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type})
+        OR CASE WHEN coalesce(r.lane_type NOT IN ('exit', 'offRamp'), true) AND (r.speed_mps > standing_mps() OR q.n >= $queue_n) THEN false END END)
+        AND CASE WHEN r.t_unseen_ns IS NULL THEN true END AS holds,
+    CASE WHEN r.is_cut_off THEN why('log_ends_beside')
+        WHEN r.t_unseen_ns IS NOT NULL AND r.side IS NOT NULL AND holds IS NULL THEN why('passed_unseen', {'object_id': r.object_id, 'from_ns': r.t_unseen_ns})
+        WHEN r.lane_type IN ('exit', 'offRamp') THEN why('broad_line_unknown', {'lane_type': r.lane_type})
         WHEN r.speed_mps <= standing_mps() AND q.n < $queue_n THEN why('passed_standing', {'object_id': r.object_id}) END AS reason
 FROM reference r
 JOIN (

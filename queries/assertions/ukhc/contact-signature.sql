@@ -12,7 +12,7 @@
 -- observes = "change of speed of the ego or the other"
 -- merge_gap_s = 1.0
 -- tags = ["contact", "standing"]
--- reads = ["between_steps", "ego_state", "hidden", "lost_object", "pair", "step", "clock"]
+-- reads = ["before_track", "between_steps", "ego_state", "hidden", "lost_object", "pair", "step", "clock"]
 -- requires = ["ego_size", "speeds"]
 --
 -- [params.within_m]
@@ -40,6 +40,9 @@
 --
 -- [reasons.close_after_hole]
 -- says = "object {object_id} is close to the ego at the end of a hole in the log"
+--
+-- [reasons.close_before_track]
+-- says = "object {object_id} is first seen here, going away from the ego: back at these speeds, it was close to the ego less than half a second before"
 --
 -- [reasons.stood_still]
 -- says = "the ego stood still: if there was a contact, the other actor hit the ego"
@@ -80,6 +83,9 @@ FROM step s
 JOIN clock c USING (drive_id, ego_id)
 JOIN pair p USING (drive_id, ego_id, t_ns)
 WHERE s.dt_ns > c.max_gap_ns AND p.clearance_m < lost_near_m()
+UNION ALL
+-- An actor that is first seen while it goes away from the ego may have touched the ego just before.
+SELECT drive_id, ego_id, t_ns, object_id, NULL, why('close_before_track', {'object_id': object_id}) FROM before_track WHERE least_m <= $within_m
 
 -- @condition
 -- greatest() ignores NULL: the acceleration of one of the two can show a contact, but not that there was none. Nor can a step show that

@@ -13,7 +13,7 @@ CREATE TABLE crossing_passage (
     coming_id VARCHAR,                -- a pedestrian on the other half at t_in_ns who goes straight on to the ego's half within 3 s (a longer time is a wait on an island); NULL: none {position}
     coming_known BOOLEAN NOT NULL,    -- for every pedestrian on the other half at t_in_ns, it is known whether they came from the ego's half, leave the crossing, or come to the ego's half; not known if the ego's side was over the other half {position}
     waiting_id VARCHAR,               -- a pedestrian who stands (at most 0.5 m/s) beside the lanes, within 2 m of the crossing's end on the ego's side, during the whole 2 s before t_in_ns; NULL: none {position}
-    waiting_known BOOLEAN NOT NULL,   -- no actor of unknown class waits there {position}
+    waiting_known BOOLEAN NOT NULL,   -- no actor of unknown class waits there, and no one of unknown speed may {position}
     known BOOLEAN NOT NULL,           -- all pedestrians nearby have a position from 2 s before t_in_ns to t_out_ns: no track has a hole then, or begins or ends within 30 m; and no actor of unknown class is on the crossing {position}
     signal_id VARCHAR,                -- the light for vehicles, see way_mark; NULL: the map has none
     state VARCHAR,                    -- [light_state] the light's state at t_in_ns; NULL: not known
@@ -158,12 +158,13 @@ person_sample AS (
     GROUP BY ALL
 ),
 waiting_person AS (
-    SELECT drive_id, ego_id, mark_id, t_ns, min(actor_id) FILTER (actor_class = 'pedestrian') AS waiting_id, bool_and(actor_class IS NOT NULL) AS known
+    SELECT drive_id, ego_id, mark_id, t_ns, min(actor_id) FILTER (actor_class = 'pedestrian' AND is_sure) AS waiting_id, bool_and(actor_class IS NOT NULL AND is_sure) AS known
     FROM (
-        SELECT drive_id, ego_id, mark_id, t_ns, actor_id, actor_class
+        -- A person whose speed is not known at some of the steps may stand there.
+        SELECT drive_id, ego_id, mark_id, t_ns, actor_id, actor_class, bool_and(stands IS NOT NULL) AS is_sure
         FROM person_sample
         GROUP BY drive_id, ego_id, mark_id, t_ns, t_in_ns, max_gap_ns, actor_id, actor_class
-        HAVING bool_and(coalesce(stands AND off_m <= 2, false)) AND min(t_at_ns) <= t_in_ns - 2_000_000_000 + max_gap_ns AND max(t_at_ns) >= t_in_ns - max_gap_ns
+        HAVING bool_and(coalesce(stands, true) AND coalesce(off_m <= 2, false)) AND min(t_at_ns) <= t_in_ns - 2_000_000_000 + max_gap_ns AND max(t_at_ns) >= t_in_ns - max_gap_ns
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
 ),

@@ -1,10 +1,10 @@
--- The grid cells of the strips beside the ego's chains that an actor visited at some time: the corridor is searched only there. A lanelet
--- that the ego drives in every lap is listed once.
+-- The grid cells of the strips beside the ego's chains that an actor visited at some time, or in which `pair` extrapolates it: the corridor is
+-- searched only there. A lanelet that the ego drives in every lap is listed once.
 -- lifetime: part
 CREATE TABLE _corridor_cell (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip of 15 m on both sides of the segment may touch, and that at some time contained the centre of an actor or a corner of an ego
+    cell BIGINT NOT NULL,             -- 4 m grid cell that the strip of 15 m on both sides of the segment may touch, and that at some time contained the centre of an actor, recorded or extrapolated (see pair), or a corner of an ego
     lanelet_id VARCHAR NOT NULL,      -- a lanelet of any of the ego's chains
     k INTEGER NOT NULL,               -- number of the segment
     s0_m DOUBLE NOT NULL,             -- lanelet station of the segment's start
@@ -58,10 +58,40 @@ strip_cell AS (
     LEFT JOIN chain_lanelet m USING (environment_id, lanelet_id)
     WHERE along0(4 * ix + 2, 4 * iy + 2, x0_m, y0_m, tx0, ty0) > -2.9 AND along1(4 * ix + 2, 4 * iy + 2, x1_m, y1_m, tx1, ty1) > -2.9
 ),
+step_number AS (
+    SELECT drive_id, t_ns, row_number() OVER (PARTITION BY drive_id ORDER BY t_ns) AS n FROM (SELECT DISTINCT drive_id, t_ns FROM step)
+),
+-- Only tracks that lack a step, or have samples between the steps, are extrapolated.
+irregular_track AS (
+    SELECT t.drive_id, t.actor_id, t.t_first_ns, t.t_last_ns
+    FROM (
+        SELECT s.drive_id, s.actor_id, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns, count(*) AS n_samples
+        FROM state_dynamics s
+        JOIN (SELECT drive_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM step_number GROUP BY ALL) e ON e.drive_id = s.drive_id
+        WHERE s.t_ns BETWEEN e.t_first_ns AND e.t_last_ns
+        GROUP BY ALL
+    ) t
+    LEFT JOIN step_number a ON a.drive_id = t.drive_id AND a.t_ns = t.t_first_ns
+    LEFT JOIN step_number b ON b.drive_id = t.drive_id AND b.t_ns = t.t_last_ns
+    WHERE (b.n - a.n + 1 = t.n_samples) IS DISTINCT FROM true
+),
+extrapolated_place AS (
+    SELECT e.drive_id, s.x_m + s.vx_mps * (e.t_ns - s.t_ns) / 1e9 AS x_m, s.y_m + s.vy_mps * (e.t_ns - s.t_ns) / 1e9 AS y_m
+    FROM (
+        SELECT r.drive_id, r.actor_id, n.t_ns
+        FROM irregular_track r
+        JOIN step_number n ON n.drive_id = r.drive_id AND n.t_ns >= r.t_first_ns AND n.t_ns <= r.t_last_ns
+    ) e
+    JOIN (SELECT drive_id, max(max_gap_ns) AS max_gap_ns FROM clock GROUP BY ALL) c ON c.drive_id = e.drive_id
+    ASOF JOIN (FROM state_dynamics SEMI JOIN irregular_track USING (drive_id, actor_id)) s ON s.drive_id = e.drive_id AND s.actor_id = e.actor_id AND s.t_ns <= e.t_ns
+    WHERE s.t_ns < e.t_ns AND e.t_ns - s.t_ns <= c.max_gap_ns
+),
 visited_cell AS (
     SELECT drive_id, corridor_cell_of(x_m, y_m) AS cell
     FROM state_dynamics
     WHERE x_m IS NOT NULL AND y_m IS NOT NULL
+    UNION
+    SELECT drive_id, corridor_cell_of(x_m, y_m) FROM extrapolated_place WHERE x_m IS NOT NULL AND y_m IS NOT NULL
     UNION
     SELECT
         s.drive_id,

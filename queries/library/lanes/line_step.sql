@@ -166,12 +166,17 @@ step_near_passed AS (
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns
     LEFT JOIN pair p ON p.drive_id = n.drive_id AND p.ego_id = n.ego_id AND p.t_ns = n.t_ns AND p.object_id = r.object_id
     CROSS JOIN LATERAL (SELECT passing_mps(e.speed_mps, p.speed_mps, p.heading_diff_rad) AS closing_mps) c
-    -- Off the corridor, an object has only a distance.
+    CROSS JOIN LATERAL (SELECT greatest(passing_before_m(e.speed_mps), passing_after_m(e.speed_mps)) AS m) far
+    -- Of an object of unknown size, the centre counts. Off the corridor, an object has only a distance.
     CROSS JOIN LATERAL (
         SELECT coalesce(
-            p.rear_s_m - e.front_s_m <= passing_before_m(c.closing_mps) AND e.rear_s_m - p.front_s_m <= passing_after_m(c.closing_mps),
-            p.distance_m <= greatest(passing_before_m(e.speed_mps), passing_after_m(e.speed_mps))
-        ) AS is_near
+            coalesce(p.rear_s_m, p.s_m) - e.front_s_m <= passing_before_m(c.closing_mps) AND e.rear_s_m - coalesce(p.front_s_m, p.s_m) <= passing_after_m(c.closing_mps),
+            p.distance_m <= far.m
+        ) AS may_be_near
+    ) window_check
+    -- Of a vehicle on the corridor whose speed or heading is not known, it is only known when it is not near.
+    CROSS JOIN LATERAL (
+        SELECT CASE WHEN NOT window_check.may_be_near OR r.is_on_foot OR p.s_m IS NULL OR p.speed_mps + p.heading_diff_rad IS NOT NULL THEN window_check.may_be_near END AS is_near
     ) d
     WHERE (r.passed OR EXISTS (FROM hidden_step d WHERE d.drive_id = r.drive_id AND d.ego_id = r.ego_id AND d.t_ns >= r.t0_ns AND d.t_ns <= r.t_end_ns))
         AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, walker_half_m(p.lat_half_m, p.length_m, p.width_m), p.half_width_m), false))

@@ -11,14 +11,14 @@ CREATE TABLE _lane_ahead (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
     object_id VARCHAR NOT NULL,       -- an actor ahead that is in the running lane and not in passed_by, or that reaches into the lane and is in the ego's way or heading into it; no pedestrian or animal, and an object only if it is in the way; see lead
-    actor_class VARCHAR,              -- [actor_class] see road_user; NULL also, without a map, if it is not known whether the actor is in the ego's way, and for an actor of unknown speed that stands in the lane or crosses it {class}
+    actor_class VARCHAR,              -- [actor_class] see road_user; NULL also, without a map, if it is not known whether the actor is in the ego's way, and for an actor of unknown speed that stands in the lane, crosses it or may head into it {class}
     gap_m DOUBLE,                     -- distance from bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
     speed_mps DOUBLE,                 -- speed of the actor {velocity}
     oncoming BOOLEAN,                 -- the actor heads against the corridor {position, heading, velocity}
     across_m DOUBLE,                  -- gap between the two boxes across the corridor; negative: overlap, the actor is in the ego's way {position, heading, size}
     ego_across_mps DOUBLE,            -- the ego's speed across the corridor, positive towards the actor {velocity}
     across_mps DOUBLE,                -- the actor's speed across the corridor, positive towards the ego {velocity}
-    soon BOOLEAN,                     -- the actor is in the ego's way, or will be within 3 s at the present speeds across the corridor {position, heading, velocity}
+    soon BOOLEAN,                     -- the actor is in the ego's way, or will be within 3 s at the present speeds across the corridor; NULL: its speed is not known {position, heading, velocity}
     outside BOOLEAN                   -- no part of the actor is in the running lane: it is beside the lane, faces the ego and is in the ego's way {position}
 );
 
@@ -50,7 +50,10 @@ object_ahead AS (
         abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
         < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
             drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))
-        ELSE 0.0 END AS soon
+        ELSE 0.0 END AS is_soon,
+        -- An object that is partly in the lane may move on into it, if its speed is not known.
+        NOT is_soon AND p.speed_mps IS NULL AND abs(p.heading_diff_rad) < 2 * pi() / 3
+            AND abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m < drift_s() * unknown_speed_mps() * -sign(p.d_m - e.d_m) * sin(p.heading_diff_rad) AS may_be_soon
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN actor_on_junction_lane c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
@@ -101,12 +104,12 @@ on_course AS (
 -- The object's centre is in the lane, or the object is in the ego's way. A vehicle that only reaches over the line must not hide the
 -- vehicle that the ego follows.
 SELECT
-    o.drive_id, o.ego_id, o.t_ns, o.object_id, CASE WHEN NOT o.is_unsure AND b.is_sure IS NULL THEN o.actor_class END AS actor_class, o.gap_m, o.speed_mps, o.oncoming, o.across_m, o.ego_across_mps,
-    o.across_mps, o.soon, o.outside
+    o.drive_id, o.ego_id, o.t_ns, o.object_id, CASE WHEN NOT o.is_unsure AND (o.is_centre_in_lane OR NOT o.may_be_soon) AND b.is_sure IS NULL THEN o.actor_class END AS actor_class, o.gap_m, o.speed_mps, o.oncoming, o.across_m, o.ego_across_mps,
+    o.across_mps, CASE WHEN NOT o.may_be_soon THEN o.is_soon END AS soon, o.outside
 FROM object_ahead o
 -- The ego neither meets nor follows an object that its own path passes.
 LEFT JOIN _passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
-WHERE (o.is_centre_in_lane OR o.soon) AND b.is_sure IS DISTINCT FROM true
+WHERE (o.is_centre_in_lane OR o.is_soon OR o.may_be_soon) AND b.is_sure IS DISTINCT FROM true
 UNION ALL BY NAME
 SELECT c.* EXCLUDE (is_course_held) FROM on_course c
 ANTI JOIN object_ahead o ON o.drive_id = c.drive_id AND o.ego_id = c.ego_id AND o.t_ns = c.t_ns AND o.object_id = c.object_id

@@ -1,10 +1,11 @@
 -- Objects whose box overlaps the ego's along the corridor, and the gap between the two boxes across it. An object's speed across the
--- corridor comes from its velocity if it has a sample at the time of the step, else from its speed and heading.
+-- corridor comes from its velocity if it has a sample at the time of the step, else from its speed and heading. An object that is passed in a
+-- hole of the log may be beside the ego from the last step before the hole on.
 -- lifetime: part
 CREATE TABLE beside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they pass each other before the next step; or at which they may overlap: then the columns from side on are NULL
+    t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they pass each other before the next step; or at which they may overlap, or after which they pass each other in a hole: then the columns from side on are NULL, but along if they pass in a hole
     object_id VARCHAR NOT NULL,       -- another actor
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     side VARCHAR,                     -- [side] the side of the ego on which the object is {position}
@@ -130,3 +131,5 @@ LEFT JOIN object_on_cycle_lane y USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN object_on_rideable_lanelet z USING (drive_id, ego_id, t_ns, object_id)
 UNION ALL BY NAME
 SELECT drive_id, ego_id, t_ns, object_id, actor_class FROM possibly_beside
+UNION ALL BY NAME
+SELECT drive_id, ego_id, t_ns, object_id, actor_class, along FROM hole_passing

@@ -88,6 +88,21 @@ level_or_past AS (
     JOIN hidden h ON h.drive_id = x.drive_id AND h.ego_id = x.ego_id AND h.t_ns >= x.t_excursion_ns AND h.t_ns <= x.t_last_ns
     WHERE NOT h.ahead
 ),
+-- Vehicles ahead in the ego's lane whose track ends shortly before the ego leaves this lane: one of them may be the overtaken vehicle, although
+-- it may also have left the road, if the recorder's range is not limited and it was further away than a lost actor is near (table `unplaced`).
+lost_ahead AS (
+    SELECT x.drive_id, x.ego_id, x.chain_id, x.t_excursion_ns, h.object_id
+    FROM overtaking_excursion x
+    JOIN hidden h ON h.drive_id = x.drive_id AND h.ego_id = x.ego_id AND h.t_ns = x.t_excursion_ns AND h.vehicle AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false
+    JOIN pair p ON p.drive_id = h.drive_id AND p.ego_id = h.ego_id AND p.object_id = h.object_id AND p.t_ns >= x.t_excursion_ns - longest_track_gap_ns()
+    JOIN ego_state e ON e.drive_id = p.drive_id AND e.ego_id = p.ego_id AND e.t_ns = p.t_ns
+    ANTI JOIN unplaced u ON u.drive_id = h.drive_id AND u.ego_id = h.ego_id AND u.t_ns = h.t_ns AND u.object_id = h.object_id
+    GROUP BY ALL
+    HAVING max(p.t_ns) < x.t_excursion_ns AND max({
+        't_ns': p.t_ns,
+        'in_lane': in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND p.s_m > e.s_m AND abs(p.heading_diff_rad) < pi() / 2
+    }).in_lane
+),
 -- The first of these steps after the object was ahead; later than the excursion if there is none. Objects that the log does not have during
 -- the excursion belong to it, too.
 level_step AS (
@@ -102,6 +117,10 @@ level_step AS (
         JOIN unplaced u ON u.drive_id = x.drive_id AND u.ego_id = x.ego_id AND u.t_ns >= x.t_excursion_ns AND u.t_ns <= x.t_end_ns
         ANTI JOIN pair_in_excursion p ON p.drive_id = x.drive_id AND p.ego_id = x.ego_id AND p.chain_id = x.chain_id
             AND p.t_excursion_ns = x.t_excursion_ns AND p.object_id = u.object_id
+        UNION
+        SELECT l.drive_id, l.ego_id, l.chain_id, l.t_excursion_ns, l.object_id, NULL FROM lost_ahead l
+        ANTI JOIN pair_in_excursion p ON p.drive_id = l.drive_id AND p.ego_id = l.ego_id AND p.chain_id = l.chain_id
+            AND p.t_excursion_ns = l.t_excursion_ns AND p.object_id = l.object_id
     ) o
     LEFT JOIN level_or_past p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.chain_id = o.chain_id
         AND p.t_excursion_ns = o.t_excursion_ns AND p.object_id = o.object_id AND p.t_ns > o.t_ahead_ns
@@ -205,6 +224,13 @@ candidate_beyond_corridor AS (
     WHERE h.vehicle AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false
     GROUP BY ALL
 ),
+candidate_lost AS (
+    SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, l.object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, a.length_m, false AS is_placed, NULL::DOUBLE AS near_m
+    FROM begin g
+    JOIN lost_ahead l USING (drive_id, ego_id, chain_id, t_excursion_ns)
+    JOIN actor a ON a.drive_id = l.drive_id AND a.actor_id = l.object_id
+    ANTI JOIN (FROM ahead WHERE near_m <= 100) n ON n.drive_id = g.drive_id AND n.ego_id = g.ego_id AND n.chain_id = g.chain_id AND n.t0_ns = g.t0_ns
+),
 -- An object that gets a position on the corridor only after t0, ahead in the lane, and that the ego passes, is an overtaken vehicle, too.
 late_candidate AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
@@ -221,6 +247,10 @@ overtaken_candidate AS (
         SELECT * FROM ahead
         UNION ALL
         SELECT * FROM candidate_without_place
+        UNION ALL
+        SELECT l.* FROM candidate_lost l
+        ANTI JOIN candidate_without_place h USING (drive_id, ego_id, chain_id, t0_ns, object_id)
+        ANTI JOIN candidate_beyond_corridor b USING (drive_id, ego_id, chain_id, t0_ns, object_id)
         UNION ALL
         SELECT b.* FROM candidate_beyond_corridor b
         ANTI JOIN ahead p USING (drive_id, ego_id, chain_id, t0_ns, object_id)

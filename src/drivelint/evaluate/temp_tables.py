@@ -67,6 +67,7 @@ def _rule_rows(bindings: Sequence[Binding]) -> pa.Table:
             "of_standing": JUDGES_STANDING_EGO_TAG in rule.tags,
         }
         row |= {"by_object": rule.combine == "each", "eventually": rule.quantifier == "eventually"}
+        row |= {"own_grid": "applies" in rule.sections}
         row |= {"merge_ns": binding.values(["_merge_ns"])["_merge_ns"]}
         limits = applicability.parameters_of_conditions(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
