@@ -47,12 +47,10 @@ EVIDENCE = {
     ("conditions", "stvo.s4-truck"): "by its class the ego is a car",
     (
         "end of the others",
-        "ukhc.r126.ds-vbp-out-of-av",
+        "ukhc.r128.back-before-solid",
     ): "170 m ahead and going the same way: who is lost there may have left the road",
-    ("end of the others", "ukhc.r128.back-before-solid"): "the same",
     ("end of the others", "ukhc.r162.return-gap"): "the same",
     ("end of the others", "ukhc.r165.no-overtaking-sign"): "the same",
-    ("end of the others", "ukhc.r163.obstruction-give-way"): "the same, 65 m ahead",
     (
         "end of the others",
         "declared.r162.go-before-overtaking",
