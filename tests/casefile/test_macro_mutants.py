@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.casefile import commands
+from drivelint.casefile import commands, macro_mutation
 from drivelint.casefile.macro_mutation import MacroMutant, judge_macro_mutants, macro_mutants
 from drivelint.casefile.scene import case_database
 from drivelint.casefile.table_cases import run_table_cases
@@ -40,14 +40,14 @@ def passing_mutants() -> list[MacroMutant]:
     return [mutant for mutant in macro_mutants() if mutant.macro in {"passing_before_m", "passing_after_m"}]
 
 
-def without_lists(results: list[MutationResult]) -> dict[str, tuple[int, tuple[str, ...]]]:
+def judged_counts(results: list[MutationResult]) -> dict[str, tuple[int, tuple[str, ...]]]:
     return {result.rule_id: (result.n, result.survivors) for result in results if result.n}
 
 
 def test_a_macro_is_changed_where_a_table_calls_it_and_where_another_macro_does(tmp_path: Path) -> None:
     """10 + 5 * 5 m is 35 m: the cases notice both numbers of the inner macro, and no case is short enough for 30 m."""
-    found = judge_macro_mutants(passing_mutants(), [table(tmp_path)], [])
-    assert without_lists(found) == {
+    found, _ = judge_macro_mutants(passing_mutants(), [table(tmp_path)], [])
+    assert judged_counts(found) == {
         "passing_after_m": (4, ()),
         "passing_before_m": (2, ("30.0 * 0.9", "30.0 * 1.1")),
     }
@@ -59,10 +59,10 @@ def test_the_macros_are_as_before_afterwards(tmp_path: Path) -> None:
     assert case_database().execute("SELECT passing_before_m(0), passing_before_m(10)").fetchall() == [(30, 60)]
 
 
-def test_a_macro_that_nobody_calls_survives(tmp_path: Path) -> None:
+def test_a_macro_that_nobody_calls_is_named_and_not_judged(tmp_path: Path) -> None:
     mutants = [mutant for mutant in macro_mutants() if mutant.macro == "same_size"]
-    (found,) = (result for result in judge_macro_mutants(mutants, [table(tmp_path)], []) if result.n)
-    assert (found.n, len(found.survivors)) == (3, 3)
+    results, uncalled = judge_macro_mutants(mutants, [table(tmp_path)], [])
+    assert (judged_counts(results), uncalled) == ({}, ["same_size"])
 
 
 def test_a_rule_judges_the_macros_that_it_calls(tmp_path: Path) -> None:
@@ -72,18 +72,27 @@ def test_a_rule_judges_the_macros_that_it_calls(tmp_path: Path) -> None:
         RULE_CASES,
     )
     mutants = [mutant for mutant in passing_mutants() if mutant.macro == "passing_after_m"]
-    assert without_lists(judge_macro_mutants(mutants, [], [rule])) == {"passing_after_m": (4, ())}
+    assert judged_counts(judge_macro_mutants(mutants, [], [rule])[0]) == {"passing_after_m": (4, ())}
 
 
 def test_a_mutant_that_is_no_valid_sql_proves_nothing(tmp_path: Path) -> None:
     wrong = MacroMutant("passing_after_m", "no such column", "v_mps + missing")
-    assert without_lists(judge_macro_mutants([wrong], [table(tmp_path)], [])) == {}
+    assert judged_counts(judge_macro_mutants([wrong], [table(tmp_path)], [])[0]) == {}
 
 
 def test_cases_that_fail_without_a_mutant_judge_nothing(tmp_path: Path) -> None:
     other = table(tmp_path, CASES.replace("[false, true]", "[true, true]"))
     with pytest.raises(RuleError, match="without any mutant"):
         judge_macro_mutants(passing_mutants(), [other], [])
+
+
+def test_a_macro_that_is_printed_with_another_meaning_judges_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(macro_mutation, "printed_select", lambda _: "SELECT 0")
+    with pytest.raises(RuleError, match="printed by DuckDB"):
+        judge_macro_mutants(passing_mutants(), [table(tmp_path)], [])
+    assert case_database().execute("SELECT passing_before_m(10)").fetchall() == [(60,)]
 
 
 def test_every_number_of_the_macros_with_arguments_has_mutants() -> None:

@@ -133,9 +133,11 @@ def table_mutation_test(table_globs: Sequence[str], print_line: Say) -> ExitCode
     print_line(mutation.summary_line(results, "table"))
     if "*" in table_globs:
         shipped = [read_rule(file) for file in _rule_files(None)]
-        macros = judge_macro_mutants(macro_mutants(), list(library_tables().values()), shipped)
+        macros, uncalled = judge_macro_mutants(macro_mutants(), list(library_tables().values()), shipped)
         for result in macros:
             print_line(mutation.result_text(result))
+        if uncalled:
+            print_line(f"not judged, because no table and no rule calls them: {', '.join(uncalled)}")
         print_line(mutation.summary_line(macros, "macro"))
         results += macros
     return ExitCode.OK if all(result.ok for result in results) else ExitCode.FAILED

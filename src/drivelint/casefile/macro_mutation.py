@@ -14,7 +14,7 @@ import duckdb
 
 from drivelint.casefile import case_location, first_unexpected_merged_case, numbered_cases, read_cases
 from drivelint.casefile.merged_cases import judge, merge_cases, mergeable_groups
-from drivelint.casefile.mutants import mutants_of_select
+from drivelint.casefile.mutants import mutants_of_select, printed_select
 from drivelint.casefile.mutation import SURVIVORS_FILE, MutationResult, read_survivors
 from drivelint.casefile.scene import case_database
 from drivelint.casefile.table_cases import FilledCases, read_table_cases
@@ -25,11 +25,12 @@ from drivelint.sql.macro_trees import macro, macro_texts
 from drivelint.sql.syntax import syntax_tree, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from contextlib import AbstractContextManager
 
+    from drivelint.casefile import Case
     from drivelint.casefile.merged_cases import NumberedCase, Scene
-    from drivelint.catalogue import Case, Rule
+    from drivelint.catalogue import Rule
     from drivelint.sql.library import LibraryTable
 
     CaseDifference = Callable[[], str | None]
@@ -56,38 +57,40 @@ def macro_mutants() -> list[MacroMutant]:
 
 def judge_macro_mutants(
     mutants: Sequence[MacroMutant], tables: Sequence[LibraryTable], rules: Sequence[Rule]
-) -> list[MutationResult]:
-    """Judge the mutants by the cases of the tables and rules that call the macro, and return a result for each macro.
+) -> tuple[list[MutationResult], list[str]]:
+    """Judge the mutants by the cases of the tables and rules that call the macro.
 
-    Errors: `RuleError` for a table or rule that fails its own cases.
+    Return a result for each macro, and the macros that no table or rule calls: their mutants cannot be judged. Errors: `RuleError` for a
+    table or rule that fails its own cases.
     """
-    remaining, valid, judged = list(mutants), set[MacroMutant](), set[MacroMutant]()
+    remaining, judged, valid = list(mutants), set[str](), set[MacroMutant]()
     for called, cases in _users(tables, rules):
+        judged |= called
         mine = [mutant for mutant in remaining if mutant.macro in called]
         if not mine:
             continue
         with cases as difference:
             if message := difference():
                 raise RuleError(f"{message} (without any mutant: see rules test)")
-            differences = {mutant: _difference_with(mutant, difference) for mutant in mine}
-        judged.update(mine)
+            if message := _difference_with({mutant.macro: _printed_value(mutant.macro) for mutant in mine}, difference):
+                raise RuleError(f"{message} (printed by DuckDB, a macro has another meaning: no mutant can be judged)")
+            differences = {mutant: _difference_with({mutant.macro: mutant.value}, difference) for mutant in mine}
         valid |= {mutant for mutant in mine if differences[mutant] is not None}
         remaining = [mutant for mutant in remaining if not differences.get(mutant)]
-    counted = valid | (
-        set(mutants) - judged
-    )  # a macro that nobody calls survives; a mutant that is no valid SQL proves nothing
     entries = read_survivors(folder("queries") / "macros" / SURVIVORS_FILE)
     names = dict.fromkeys([*(mutant.macro for mutant in mutants), *(entry.rule for entry in entries)])
-    return [
+    results = [
         MutationResult(
             name,
             True,
-            sum(mutant.macro == name for mutant in counted),
-            tuple(mutant.fault for mutant in remaining if mutant.macro == name and mutant in counted),
+            sum(mutant.macro == name for mutant in valid),
+            tuple(mutant.fault for mutant in remaining if mutant.macro == name and mutant in valid),
             tuple(entry.mutant for entry in entries if entry.rule == name),
         )
         for name in names
+        if name in judged or name not in macro_texts()
     ]
+    return results, [name for name in names if name not in judged and name in macro_texts()]
 
 
 def _users(
@@ -145,17 +148,22 @@ def _difference_of_rule(
     return ""
 
 
-def _difference_with(mutant: MacroMutant, difference: CaseDifference) -> str | None:
-    """Return the difference of the cases if the macro has the fault; None if the SQL is then not valid."""
-    parameters, value = macro_texts()[mutant.macro]
+def _difference_with(values: Mapping[str, str], difference: CaseDifference) -> str | None:
+    """Return the difference of the cases if macros have these values; None if the SQL is then not valid."""
     try:
-        _replace_macro(mutant.macro, parameters, mutant.value)
+        for name, value in values.items():
+            _replace_macro(name, value)
         return difference()
     except duckdb.ProgrammingError:
         return None
     finally:
-        _replace_macro(mutant.macro, parameters, value)
+        for name in values:
+            _replace_macro(name, macro_texts()[name][1])
 
 
-def _replace_macro(name: str, parameters: str, value: str) -> None:
-    case_database().execute(f"CREATE OR REPLACE MACRO {name}({parameters}) AS {value}")
+def _printed_value(name: str) -> str:
+    return printed_select(f"SELECT {macro_texts()[name][1]}").removeprefix("SELECT ")
+
+
+def _replace_macro(name: str, value: str) -> None:
+    case_database().execute(f"CREATE OR REPLACE MACRO {name}({macro_texts()[name][0]}) AS {value}")
