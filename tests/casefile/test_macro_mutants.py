@@ -65,6 +65,15 @@ def test_a_macro_that_nobody_calls_is_named_and_not_judged(tmp_path: Path) -> No
     assert (judged_counts(results), uncalled) == ({}, ["same_size"])
 
 
+def test_a_listed_survivor_of_an_unknown_macro_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "macros").mkdir()
+    entries = '[[survivor]]\nrule = "gone"\nmutant = "2 * 0.9"\nreason = "r"\n'
+    (tmp_path / "macros" / "survivors.toml").write_text(entries, encoding="utf-8")
+    monkeypatch.setattr(macro_mutation, "folder", lambda _: tmp_path)
+    (result,), _ = judge_macro_mutants([], [table(tmp_path)], [])
+    assert (result.rule_id, result.ok, result.stale_listed_faults) == ("gone", False, ("2 * 0.9",))
+
+
 def test_a_rule_judges_the_macros_that_it_calls(tmp_path: Path) -> None:
     """The macro is 75 m at 13 m/s: the boundary of the rule is as in the cases."""
     rule = with_cases(

@@ -90,7 +90,7 @@ def judge_macro_mutants(
         for name in names
         if name in judged or name not in macro_texts()
     ]
-    return results, [name for name in names if name not in judged and name in macro_texts()]
+    return results, sorted({mutant.macro for mutant in mutants} - judged)
 
 
 def _users(
