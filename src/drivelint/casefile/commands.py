@@ -16,6 +16,7 @@ import duckdb
 
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.binding_errors import unknown_columns
+from drivelint.casefile.macro_mutation import judge_macro_mutants, macro_mutants
 from drivelint.casefile.scene import case_database
 from drivelint.casefile.table_cases import run_table_cases
 from drivelint.casefile.table_mutation import judge_table_mutants
@@ -121,13 +122,24 @@ def table_case_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
 def table_mutation_test(table_globs: Sequence[str], print_line: Say) -> ExitCode:
     """Judge the mutants of the library tables by their cases, and print a line for each table and each survivor.
 
-    Return FAILED if a mutant survives that is not listed, or cases are missing. Errors: as those of `table_case_test`.
+    With the glob `*`, also the mutants of the macros with arguments, by the cases of all tables and shipped rules.
+    Return FAILED if a mutant survives that is not listed, or cases are missing. Errors: as those of `table_case_test`, and `RuleError`
+    if the cases cannot judge macros, because some fail without any mutant.
     """
     results = []
     for table in _selected_tables(table_globs):
         results.append(judge_table_mutants(table))
         print_line(mutation.result_text(results[-1]))
     print_line(mutation.summary_line(results, "table"))
+    if "*" in table_globs:
+        shipped = [read_rule(file) for file in _rule_files(None)]
+        macros, uncalled = judge_macro_mutants(macro_mutants(), list(library_tables().values()), shipped)
+        for result in macros:
+            print_line(mutation.result_text(result))
+        if uncalled:
+            print_line(f"not judged, because no table and no rule calls them: {', '.join(uncalled)}")
+        print_line(mutation.summary_line(macros, "macro"))
+        results += macros
     return ExitCode.OK if all(result.ok for result in results) else ExitCode.FAILED
 
 

@@ -39,14 +39,14 @@ def judge_table_mutants(table: LibraryTable) -> MutationResult:
         cases = read_table_cases(table)
         filled = FilledCases(table, cases)
         try:
-            if message := _first_difference(table, cases, filled, table.select):
+            if message := first_difference(table, cases, filled, table.select):
                 raise RuleError(f"{message} (the table itself: see rules test --table {table.name})")
-            if _first_difference(table, cases, filled, printed_select(table.select)) != "":
+            if first_difference(table, cases, filled, printed_select(table.select)) != "":
                 raise RuleError(
                     f"{table.path}: printed by DuckDB, the SELECT has another meaning: no mutant can be judged"
                 )
             for fault, select in mutants_of_select(table.select):
-                difference = _first_difference(table, cases, filled, select)
+                difference = first_difference(table, cases, filled, select)
                 if difference is not None:  # else the mutant is no valid SQL
                     n += 1
                     survivors += [] if difference else [fault]
@@ -57,7 +57,7 @@ def judge_table_mutants(table: LibraryTable) -> MutationResult:
     return MutationResult(table.name, True, n, tuple(survivors), listed, problem)
 
 
-def _first_difference(
+def first_difference(
     table: LibraryTable, cases: Sequence[CompleteCase], filled: FilledCases, select: str
 ) -> str | None:
     """Return the first difference of the rows from the expected ones, '' if there is none, or None if the SELECT is not valid."""
