@@ -51,9 +51,10 @@ object_ahead AS (
         < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
             drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))
         ELSE 0.0 END AS is_soon,
-        -- An object that is partly in the lane may move on into it, if its speed is not known.
+        -- An object that is partly in the lane may stand while the ego moves over, or move on into the lane, if its speed is not known.
         NOT is_soon AND p.speed_mps IS NULL AND abs(p.heading_diff_rad) < 2 * pi() / 3
-            AND abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m < drift_s() * unknown_speed_mps() * -sign(p.d_m - e.d_m) * sin(p.heading_diff_rad) AS may_be_soon
+            AND abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
+            < drift_s() * (coalesce(sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad), 0.0) + unknown_speed_mps() * greatest(0.0, -sign(p.d_m - e.d_m) * sin(p.heading_diff_rad))) AS may_be_soon
     FROM pair p
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN actor_on_junction_lane c ON c.drive_id = p.drive_id AND c.object_id = p.object_id AND c.t_ns = p.t_ns
