@@ -68,7 +68,7 @@ CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) A
 
 -- The highest and the lowest limit of Rule 124, in m/s, that may apply if some arguments are not known. signed: the map states a limit,
 -- which replaces the limit for built-up areas (20 mph in Wales, else 30). A town map without limits may be of any country: the built-up
--- limit counts as the highest only if the nation is given.
+-- limit counts as the highest only if the nation is given. The lowest is that of a map that states a limit.
 CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
         WHEN NOT signed AND area = 'built_up' AND nation IS NOT NULL THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END
@@ -77,11 +77,8 @@ CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, length_m, nation, road_typ
             CASE WHEN coalesce(road_type, 'motorway') = 'motorway' AND coalesce(carriageway, 'dual') = 'dual' THEN 'motorway' ELSE coalesce(carriageway, 'dual') END
         )
     END;
-CREATE OR REPLACE MACRO least_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
-    0.44704 * CASE
-        WHEN NOT signed AND coalesce(area, 'built_up') = 'built_up' THEN CASE WHEN coalesce(nation, 'gb') IN ('gb', 'gb-wls') THEN 20 ELSE 30 END
-        ELSE class_limit_mph(
-            coalesce(vehicle_class, 'goods_over_7t5'), coalesce(length_m, 'inf'::DOUBLE), CASE WHEN coalesce(nation, 'gb') = 'gb' THEN 'gb-sct' ELSE nation END,
-            CASE WHEN road_type = 'motorway' THEN 'motorway' ELSE coalesce(carriageway, 'single') END
-        )
-    END;
+CREATE OR REPLACE MACRO least_limit_mps(vehicle_class, length_m, nation, road_type, carriageway) AS
+    0.44704 * class_limit_mph(
+        coalesce(vehicle_class, 'goods_over_7t5'), coalesce(length_m, 'inf'::DOUBLE), CASE WHEN coalesce(nation, 'gb') = 'gb' THEN 'gb-sct' ELSE nation END,
+        CASE WHEN road_type = 'motorway' THEN 'motorway' ELSE coalesce(carriageway, 'single') END
+    );

@@ -135,7 +135,8 @@ def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
 @pytest.mark.ci
 def test_findings_that_have_their_copies_are_not_judged_again(logs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Copies for all findings, of which the worst is only possible: the others were judged with it, and nothing is left to judge."""
-    judge_windows, settled = RobustnessJudge._judge_windows, []
+    judge_windows = RobustnessJudge._judge_windows
+    settled: list[bool] = []
 
     def judge_and_note(judge: RobustnessJudge, chunk: list[Window]) -> None:
         settled.extend(question.is_settled for window in chunk for question in window.questions)

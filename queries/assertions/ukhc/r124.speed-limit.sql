@@ -40,7 +40,7 @@ WITH limit_range AS (
         least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
         -- A sign that the map does not have may set any limit: without a limit in the map, no speed is a pass.
         CASE WHEN e.limit_mps IS NOT NULL
-            THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, true)) + $tolerance_mps END AS least_mps
+            THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway)) + $tolerance_mps END AS least_mps
     FROM ego_state e
     JOIN step s USING (drive_id, ego_id, t_ns)
     LEFT JOIN ego_condition c USING (drive_id, ego_id, t_ns)
