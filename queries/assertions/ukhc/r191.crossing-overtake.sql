@@ -89,7 +89,7 @@ nearer_vehicle AS (
         SELECT is_vehicle(o.actor_class) AND NOT is_bicycle(o.actor_class, o.length_m) AND o.speed_mps > standing_mps() AND abs(o.heading_diff_rad) < pi() / 4 AND d.t_ns IS NOT NULL
             AND o.front_s_m > v.front_s_m AND o.front_s_m - e.front_s_m <= st.travel_m - p.travel_m AS is_nearer
     ) n
-    WHERE n.is_nearer IS DISTINCT FROM false
+    WHERE NOT p.is_standing AND n.is_nearer IS DISTINCT FROM false
     GROUP BY r.ref_id, p.object_id, p.t_ns
 ),
 pass_before_crossing AS (
@@ -100,7 +100,7 @@ pass_before_crossing AS (
     FROM reference r
     JOIN step st USING (drive_id, ego_id, t_ns)
     JOIN passed_object p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_first_ns <= r.t_out_ns AND p.travel_m >= st.travel_m - $zigzag_m
-    LEFT JOIN nearer_vehicle n ON n.ref_id = r.ref_id AND n.object_id = p.object_id AND n.t_ns = p.t_ns AND NOT p.is_standing
+    LEFT JOIN nearer_vehicle n ON n.ref_id = r.ref_id AND n.object_id = p.object_id AND n.t_ns = p.t_ns
     CROSS JOIN LATERAL (
         SELECT CASE WHEN NOT p.is_standing THEN true WHEN p.is_standing AND NOT p.is_on_road THEN false
             WHEN p.is_standing AND r.for_whom THEN CASE WHEN p.has_moved THEN true END
