@@ -94,18 +94,17 @@ def crowd() -> tuple[Drive, ...]:
         standing("x", halves, times(33.0), 150, halves.own),
     ]
     found.append(drive(actors, halves.environment, drive_id="halves"))
-    return (*found, rarely(), crashed(), passing(), *bridged(), *streets())
+    return (*found, rarely(), crashed(), passing(), passing("late", first_s=10.7), *bridged(), *streets())
 
 
-def passing() -> Drive:
-    """Return a drive in which the ego moves aside in its lane and passes a car that is parked at the kerb."""
+def passing(drive_id: str = "passing", first_s: float = 0.0) -> Drive:
+    """Return a drive in which the ego moves aside in its lane and passes a car at the kerb, which is in the log from a second on."""
     way = road()
     t = times(12.0)
     aside = np.clip((t - 4.0) / 2.5, 0.0, 1.0)
     ego = moving("ego", way, t, 100 + 10 * t, way.own - np.sign(way.own) * 0.92 * aside * aside * (3 - 2 * aside))
-    return drive(
-        [ego, standing("p", way, t, 200.0, np.sign(way.own) * (LANE - 0.2))], way.environment, drive_id="passing"
-    )
+    parked = standing("p", way, t, 200.0, np.sign(way.own) * (LANE - 0.2))
+    return drive([ego, parked.keep(t >= first_s)], way.environment, drive_id=drive_id)
 
 
 def rarely() -> Drive:
