@@ -221,7 +221,7 @@ candidate_beyond_corridor AS (
     JOIN ego_state e ON e.drive_id = n.drive_id AND e.ego_id = n.ego_id AND e.t_ns = n.t_ns AND e.x_m IS NOT NULL AND e.front_s_m IS NULL
     JOIN hidden h ON h.drive_id = g.drive_id AND h.ego_id = g.ego_id AND h.t_ns >= g.t0_ns AND h.t_ns <= g.t_end_ns
     JOIN actor a ON a.drive_id = h.drive_id AND a.actor_id = h.object_id
-    WHERE h.vehicle AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false
+    WHERE h.vehicle AND h.ahead IS DISTINCT FROM false
     GROUP BY ALL
 ),
 candidate_lost AS (
