@@ -50,13 +50,13 @@ def test_of_the_demo(tmp_path: Path) -> None:
         profiles=(*PROFILES, "observed"),
         robustness=False,
     )
-    check_every_finding(make_pack(tmp_path / "result", tmp_path / "pack"), at_least=70)
+    check_every_finding(make_pack(tmp_path / "result", tmp_path / "pack"), at_least=77)
 
 
 @pytest.mark.parametrize(
     ("log", "road", "at_least"),
     [
-        ("commonroad/USA_US101-4_1_T-1.xml", None, 85),
+        ("commonroad/USA_US101-4_1_T-1.xml", None, 93),
         ("osi/pedestrian.osi", "osi/fabriksgatan.xodr", 3),
         ("overtake_case_study/collision.csv", "overtake_case_study/t_junction.xodr", 20),
     ],
