@@ -1,7 +1,7 @@
 -- The subjects to which a rule does not apply, whatever happens in the drive: at every step some condition is known, and is not one that the
 -- rule allows. `other_nation`: the law of one nation says nothing about a drive in another. `outside_conditions`: the conditions of a rule's header.
 -- `ego_never_moves`: an ego that is parked all along is judged by rules about standing only.
-CREATE OR REPLACE TEMP TABLE _excluded AS
+CREATE OR REPLACE TEMP TABLE _ruled_out AS
 WITH _conditions AS (
     SELECT row_number() OVER () AS no, * FROM (
         SELECT DISTINCT
@@ -36,12 +36,9 @@ CROSS JOIN (
 ) e
 WHERE NOT r.of_standing;
 
--- The subjects at no step of which the conditions of a rule's header hold.
-CREATE OR REPLACE TEMP TABLE _outside AS SELECT rule_no, drive_id, ego_id FROM _excluded WHERE code = 'outside_conditions';
-
 -- The first of a rule's required signals that the log cannot give. A signal without a row in `capability` counts as missing, if it is
 -- not one that a log is taken to have.
-CREATE OR REPLACE TEMP TABLE _gated AS
+CREATE OR REPLACE TEMP TABLE _lacking AS
 SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason FROM (
     SELECT n.rule_no, s.drive_id, s.ego_id,
         min({'pos': n.pos, 'signal': n.signal,
@@ -64,17 +61,21 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     WHERE n.may_be_unrecorded AND c.available IS DISTINCT FROM true AND NOT (n.signal = 'indicator' AND coalesce(l.names_indicator, false))
     GROUP BY ALL
 ) u
-ANTI JOIN _excluded e ON e.rule_no = u.rule_no AND e.drive_id = u.drive_id AND e.ego_id = u.ego_id;
-DELETE FROM _gated g WHERE EXISTS (
-    SELECT 1 FROM _unrecorded u WHERE u.rule_no = g.rule_no AND u.drive_id = g.drive_id AND u.ego_id = g.ego_id);
+ANTI JOIN _ruled_out e ON e.rule_no = u.rule_no AND e.drive_id = u.drive_id AND e.ego_id = u.ego_id;
+
+CREATE OR REPLACE TEMP TABLE _gated AS
+FROM _lacking g
+ANTI JOIN _unrecorded u ON u.rule_no = g.rule_no AND u.drive_id = g.drive_id AND u.ego_id = g.ego_id
+ANTI JOIN _ruled_out e ON e.rule_no = g.rule_no AND e.drive_id = g.drive_id AND e.ego_id = g.ego_id;
 
 -- A rule with all its signals is run, and says itself at which steps or occasions its conditions do not hold.
-DELETE FROM _excluded e WHERE code = 'outside_conditions' AND NOT EXISTS (
-    SELECT 1 FROM _gated g WHERE g.rule_no = e.rule_no AND g.drive_id = e.drive_id AND g.ego_id = e.ego_id);
-DELETE FROM _excluded e WHERE code = 'outside_conditions' AND EXISTS (
-    SELECT 1 FROM _excluded f WHERE f.code = 'other_nation' AND f.rule_no = e.rule_no AND f.drive_id = e.drive_id AND f.ego_id = e.ego_id);
-DELETE FROM _gated g WHERE EXISTS (
-    SELECT 1 FROM _excluded e WHERE e.rule_no = g.rule_no AND e.drive_id = g.drive_id AND e.ego_id = g.ego_id);
+CREATE OR REPLACE TEMP TABLE _excluded AS
+FROM _ruled_out WHERE code <> 'outside_conditions'
+UNION ALL
+FROM _ruled_out e
+SEMI JOIN _lacking g ON g.rule_no = e.rule_no AND g.drive_id = e.drive_id AND g.ego_id = e.ego_id
+ANTI JOIN (FROM _ruled_out WHERE code = 'other_nation') f ON f.rule_no = e.rule_no AND f.drive_id = e.drive_id AND f.ego_id = e.ego_id
+WHERE e.code = 'outside_conditions';
 
 -- The subjects for which a rule is to be run.
 CREATE OR REPLACE TEMP TABLE _todo AS

@@ -54,10 +54,11 @@ def derive(
     }
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
-    (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
+    rows = store.row_counts(con)
+    n_states = rows["actor_state"]
     if n_states > MOST_STATES_FOR_EMPTINESS_TEST:
         todo = {table: replace(step, occasion="") for table, step in todo.items()}
-    without_rows, types = store.tables_without_rows(con), {} if are_map_tables else store.id_types(con)
+    without_rows, types = {table for table, n in rows.items() if not n}, {} if are_map_tables else store.id_types(con)
     empty, old = without_rows - todo.keys(), todo.keys() - without_rows
     for table in statement_texts("map_shapes").keys() - empty if are_map_tables else ():
         con.execute(statement(f"map_shapes/{table}"))

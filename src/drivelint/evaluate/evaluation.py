@@ -94,15 +94,13 @@ class Evaluation:
             self.release()
         self._run_statements("blind", "closed")
         unexplained = "FROM _closed WHERE verdict = 'unknown' AND reason IS NULL AND tells_no_cause(code)"
-        self._run_statements(
-            "cause" if self._count_rows(f"SELECT count(*) {unexplained}") else "no_cause", "named", "failed"
-        )
+        self._run_statements("cause" if self._count_rows(f"SELECT count(*) {unexplained}") else "no_cause", "named")
+        n_failed = self._run_statements("failed")
         make_reason_table(
             self.con,
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        n_failed = self._count_rows("SELECT count(*) FROM _failed")
         self._run_statements(*(("finding",) if n_failed else ()), "verdict", *(("margin",) if self.margins else ()))
         if self.keep_measure_series:
             self._run_statements("course")
@@ -267,7 +265,8 @@ class Evaluation:
         ):
             return
         self._execute(reference_points.time_windows_sql(rule, own_object, self._check_engagement), binding)
-        self._execute(reference_points.reference_steps_sql(rule), binding)
+        if (window_steps := reference_points.window_steps_sql(rule)) is not None:
+            self._execute(window_steps, binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
         self._n_pending += self._execute(
@@ -314,10 +313,12 @@ class Evaluation:
     def _may_skip_rest(self, n_rows: int) -> bool:
         return n_rows == 0
 
-    def _run_statements(self, *names: str) -> None:
-        """Run statements of `queries/judging` in this order."""
+    def _run_statements(self, *names: str) -> int:
+        """Run statements of `queries/judging` in this order; return the number of rows that the last one inserted."""
+        n_rows = 0
         for name in names:
-            self.con.execute(statement(f"judging/{name}"))
+            n_rows = self._count_rows(statement(f"judging/{name}"))
+        return n_rows
 
     def _execute(self, sql: str, binding: Binding) -> int:
         """Execute one statement with the values of its parameters; return the number of rows that it inserted."""
@@ -381,8 +382,10 @@ class PlanRecorder(Evaluation):
         self.plans += [str(plan) for _, plan in rows]
         return super()._execute(sql, binding)
 
-    def _run_statements(self, *names: str) -> None:
+    def _run_statements(self, *names: str) -> int:
+        n_rows = 0
         for name in names:
             rows = self.con.execute(f"EXPLAIN {statement(f'judging/{name}')}").fetchall()
             self.plans += [str(plan) for _, plan in rows]
-            super()._run_statements(name)
+            n_rows = super()._run_statements(name)
+        return n_rows

@@ -38,19 +38,20 @@ def time_windows_sql(rule: Rule, has_object_column: bool, check_engagement: bool
         "judging/occasion",
         own_object="r.object_id" if has_object_column else "NULL",
         crowd="true" if rule.per_object and not has_object_column else "false",
+        at_point="false" if rule.subtype in {"temporal", "physical"} else "true",
         start="r.t_ns - $_window_ns" if has_window and rule.kind == "precondition" else "r.t_ns",
         end="r.t_ns + $_window_ns" if has_window and rule.kind == "postcondition" else "r.t_ns",
         **applicability.condition_sql_fragments(rule, "r", "r.t_ns", check_engagement),
     )
 
 
-def reference_steps_sql(rule: Rule) -> str:
-    """Return the SQL that appends to `_reference_step` the times at which each reference is judged; NULL for an unknown anchor."""
+def window_steps_sql(rule: Rule) -> str | None:
+    """Return the SQL that appends to `_window_step` the steps of windows, or the anchors; None for references judged at their time."""
     if rule.subtype == "temporal":
-        return statement("judging/reference_step_of_windows")
+        return statement("judging/window_step_of_windows")
     if rule.subtype == "physical":
-        return statement("judging/reference_step_of_anchors", anchor=rule.sections["anchor"])
-    return statement("judging/reference_step_of_points")
+        return statement("judging/window_step_of_anchors", anchor=rule.sections["anchor"])
+    return None
 
 
 def judged_steps_sql(rule: Rule, has_object_column: bool, check_engagement: bool) -> str:

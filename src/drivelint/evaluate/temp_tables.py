@@ -42,7 +42,11 @@ def create_tables_and_count_subjects(
     store.insert(con, "_needs", _required_signal_rows(bindings))
     store.insert(con, "_allowed", _rows_of_allowed_condition_values(bindings))
     con.execute(statement("judging/todo"))
-    sql = "SELECT rule_no, count(*), count(o.rule_no) FROM _todo t LEFT JOIN _outside o USING (rule_no, drive_id, ego_id) GROUP BY rule_no"
+    sql = """
+        SELECT rule_no, count(*), count(o.rule_no)
+        FROM _todo t LEFT JOIN (FROM _ruled_out WHERE code = 'outside_conditions') o USING (rule_no, drive_id, ego_id)
+        GROUP BY rule_no
+    """
     counts = con.execute(sql).fetchall()
     return {int(no): int(n) for no, n, _ in counts}, {int(no) for no, n, n_outside in counts if n == n_outside}
 

@@ -34,6 +34,8 @@ ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns with the id of an actor."""
 _TABLES_WITH_TEXT_IDS = frozenset({"margin"})
 """Tables with ids from a rule's SQL: the rule may return an actor id that no log contains."""
+_NEVER_ALLOWED = ("allow_persistent_secrets", "autoinstall_known_extensions", "autoload_known_extensions")
+"""Settings that are off from the start."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 
 
@@ -153,9 +155,6 @@ def lock_down(con: duckdb.DuckDBPyConnection) -> None:
     if con.execute("SELECT current_setting('lock_configuration')").fetchall()[0][0]:
         return
     for setting in (
-        "allow_persistent_secrets=false",
-        "autoinstall_known_extensions=false",
-        "autoload_known_extensions=false",
         "allowed_configs=['memory_limit', 'threads']",
         "enable_external_access=false",
         "lock_configuration=true",
@@ -207,7 +206,9 @@ def open_without_creating_tables(path: Path | None = None, *, read_only: bool = 
     be loaded.
     """
     con = duckdb.connect(
-        str(path) if path else ":memory:", read_only=read_only, config={"allow_unsigned_extensions": True}
+        str(path) if path else ":memory:",
+        read_only=read_only,
+        config=dict.fromkeys(_NEVER_ALLOWED, False) | {"allow_unsigned_extensions": True},
     )
     _load_spatial(con)
     con.execute("SET allow_unsigned_extensions=false")
@@ -357,10 +358,15 @@ def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> 
         con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 
 
+def row_counts(con: duckdb.DuckDBPyConnection) -> dict[str, int]:
+    """Return table -> number of rows, without counting them; deleted rows may be counted."""
+    sql = "SELECT table_name, estimated_size FROM duckdb_tables() WHERE database_name = current_database()"
+    return {table: int(n) for table, n in con.execute(sql).fetchall()}
+
+
 def tables_without_rows(con: duckdb.DuckDBPyConnection) -> set[str]:
     """Return the tables without rows. A table whose rows were deleted may be missing; callers then only run unneeded statements."""
-    sql = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
-    return {table for (table,) in con.execute(sql).fetchall()}
+    return {table for table, n in row_counts(con).items() if not n}
 
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:

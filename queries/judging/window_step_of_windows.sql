@@ -1,5 +1,5 @@
 -- The steps of the window of each reference.
-INSERT INTO _reference_step BY NAME
+INSERT INTO _window_step BY NAME
 -- time buckets as long as the window turn the range join into an equi-join: a window touches two of them
 WITH _bucket AS (
     SELECT *, unnest([a_ns // greatest($_window_ns, 1), a_ns // greatest($_window_ns, 1) + 1]) AS bucket

@@ -1,5 +1,5 @@
 -- The anchors of each reference; t_ns is NULL for one that is not known.
-INSERT INTO _reference_step BY NAME
+INSERT INTO _window_step BY NAME
 WITH _anchor AS (
 {anchor}
 ) SELECT $_no AS rule_no, p.*, s.seg
