@@ -5,5 +5,6 @@ profile_of_rule AS (
 ), profiled AS (
     SELECT v.* REPLACE (coalesce(v.profile, p.profile) AS profile)
     FROM {of}verdicts v
-    LEFT JOIN (SELECT * FROM profile_of_rule) p ON p.rule_id = v.rule_id AND v.profile IS NULL
+    -- one equality, so that DuckDB hashes: a condition on one side alone makes a left join a loop over all pairs
+    LEFT JOIN (SELECT * FROM profile_of_rule) p ON p.rule_id = CASE WHEN v.profile IS NULL THEN v.rule_id END
 )
