@@ -109,7 +109,7 @@ def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pyte
     spans = ((0, 0.1), (5, 5))
     monkeypatch.setattr(clip, "TRIED_PADDINGS_S", spans)
     written = clip.write_clip(ConvertRequest(str(log), "mcap", tmp_path / "clip"), row["finding_id"], out, None)
-    assert "as 0 s and 0.1 s do not give it" in written.notes[-1]
+    assert "because 0 s and 0.1 s do not give it" in written.notes[-1]
     assert same(judged_alone(written.path, row["rule_id"]), row)
 
 
