@@ -36,9 +36,6 @@
 -- unit = "m/s"
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
--- [reasons.oncoming_braked]
--- says = "{object_id} braked at {decel_mps2:.1f} m/s2"
---
 -- [reasons.came_by]
 -- says = "{object_id} passed with {room_m:.2f} m between"
 --
@@ -71,7 +68,8 @@ QUALIFY row_number() OVER (
 
 -- @condition
 -- The rule is known to be kept only if the manoeuvre was seen to its end: every vehicle placed, the ego back in its lane, and the log goes
--- on for pet_s after that.
+-- on for pet_s after that. An oncoming vehicle that came later had to brake for the ego only if it would otherwise have come within pet_s
+-- (forced_braking): it may have braked for a light or a bend.
 WITH oncoming_braking AS (
     SELECT
         r.ref_id,
@@ -127,18 +125,15 @@ unplaced_vehicle AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.is_violation OR m.is_violation THEN false
+        WHEN coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation THEN false
         WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
+        WHEN coalesce(bool_or(c.pet_s < $pet_s), false)
             -- The object of the rule is the standing vehicle: the reason names the oncoming one.
-            THEN coalesce(
-                min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
-                    FILTER (c.pet_s < $pet_s).words,
-                min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2})})
-                    FILTER (c.decel_mps2 > $decel_mps2).words)
+            THEN min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
+                FILTER (c.pet_s < $pet_s).words
         WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true 
             THEN CASE WHEN m.least.passes THEN why('came_by', m.least) ELSE why('ran_into', m.least) END
         WHEN f.words IS NOT NULL THEN f.words
