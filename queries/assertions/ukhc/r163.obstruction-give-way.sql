@@ -125,11 +125,13 @@ unplaced_vehicle AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation THEN false
+        -- If it is not sure that the ego went round the vehicle, the rule can be kept, but not broken: it may have turned in at a junction.
+        WHEN coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation THEN CASE WHEN NOT may_be_no_overtake(o.status, o.sure) THEN false END
         WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
+        WHEN may_be_no_overtake(o.status, o.sure) AND (coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation) THEN overtake_doubt(o.vbp_id)
         WHEN coalesce(bool_or(c.pet_s < $pet_s), false)
             -- The object of the rule is the standing vehicle: the reason names the oncoming one.
             THEN min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
@@ -150,4 +152,4 @@ LEFT JOIN close_meeting m USING (ref_id)
 LEFT JOIN unplaced_vehicle v USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.unplaced
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.vbp_id, o.status, o.sure, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.unplaced
