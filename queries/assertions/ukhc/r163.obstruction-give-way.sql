@@ -36,6 +36,10 @@
 -- unit = "m/s"
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
+-- [reasons.oncoming_braked]
+-- says = "{object_id} braked at {decel_mps2:.1f} m/s2 and came {pet_s:.1f} s after the ego: it is not known whether it braked for the ego"
+-- advice = "a person must judge this"
+--
 -- [reasons.came_by]
 -- says = "{object_id} passed with {room_m:.2f} m between"
 --
@@ -68,8 +72,8 @@ QUALIFY row_number() OVER (
 
 -- @condition
 -- The rule is known to be kept only if the manoeuvre was seen to its end: every vehicle placed, the ego back in its lane, and the log goes
--- on for pet_s after that. An oncoming vehicle that came later had to brake for the ego only if it would otherwise have come within pet_s
--- (forced_braking): it may have braked for a light or a bend.
+-- on for pet_s after that. An oncoming vehicle that came later and braked hard had to brake for the ego if it would otherwise have come
+-- within pet_s (forced_braking). If not, it may have braked for a light or others.
 WITH oncoming_braking AS (
     SELECT
         r.ref_id,
@@ -127,7 +131,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
     CASE
         -- If it is not sure that the ego went round the vehicle, the rule can be kept, but not broken: it may have turned in at a junction.
         WHEN coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation THEN CASE WHEN NOT may_be_no_overtake(o.status, o.sure) THEN false END
-        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
+        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL OR coalesce(bool_or(c.decel_mps2 > $decel_mps2), false) THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
@@ -139,6 +143,9 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
         WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true 
             THEN CASE WHEN m.least.passes THEN why('came_by', m.least) ELSE why('ran_into', m.least) END
         WHEN f.words IS NOT NULL THEN f.words
+        WHEN coalesce(bool_or(c.decel_mps2 > $decel_mps2), false)
+            THEN min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2, 'pet_s': c.pet_s})})
+                FILTER (c.decel_mps2 > $decel_mps2).words
         WHEN o.t3_ns IS NULL THEN why('return_unseen')
         WHEN v.ref_id IS NOT NULL THEN why('object_lacks_unbroken', v.unplaced)
         WHEN NOT o.begin_seen THEN why('pull_out_unseen')
