@@ -54,12 +54,21 @@ CREATE OR REPLACE MACRO gap_closed_s(gap_m, dv, da) AS
         WHEN dv + da + gap_m IS NOT NULL THEN 'inf'::DOUBLE
     END;
 
--- Modified time to collision (Ozbay et al. 2008), at present accelerations. A braking lead stops and does not reverse.
+-- Time after which a vehicle that brakes stands; infinite: it does not brake.
+CREATE OR REPLACE MACRO stopped_after_s(v_mps, a_mps2) AS
+    CASE WHEN v_mps * a_mps2 < 0 OR v_mps = 0 AND a_mps2 < 0 THEN -v_mps / a_mps2 WHEN v_mps + a_mps2 IS NOT NULL THEN 'inf'::DOUBLE END;
+
+-- Modified time to collision (Ozbay et al. 2008), at present accelerations; v_lead_mps is negative if the other comes towards the ego. Who
+-- brakes, stops and does not reverse. So there are three cases: they meet while both move; the other stands first, and the ego drives up to
+-- it; the ego stands first, and the other comes, if it is oncoming.
 CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
     CASE
-        WHEN v_lead_mps >= 0 AND a_lead_mps2 < 0 AND gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) > -v_lead_mps / a_lead_mps2
+        WHEN gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) <= least(stopped_after_s(v_mps, a_mps2), stopped_after_s(v_lead_mps, a_lead_mps2))
+            THEN gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
+        WHEN stopped_after_s(v_lead_mps, a_lead_mps2) <= stopped_after_s(v_mps, a_mps2)
             THEN gap_closed_s(gap_m - v_lead_mps ** 2 / (2 * a_lead_mps2), v_mps, a_mps2)
-        ELSE gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
+        WHEN v_lead_mps >= 0 AND gap_m + v_mps + a_mps2 + a_lead_mps2 IS NOT NULL THEN 'inf'::DOUBLE
+        ELSE gap_closed_s(gap_m + v_mps ** 2 / (2 * a_mps2), -v_lead_mps, -a_lead_mps2)
     END;
 
 -- An acceleration is a mean over half a second, or over this time at least: four steps at 10 samples a second, whose times jitter.

@@ -17,8 +17,14 @@
 -- default = 0.5
 -- unit = "s"
 -- why = "our default: a lamp and its message take that long"
+--
+-- [reasons.signals_to_side]
+-- says = "the ego signals to the {side}: from the 01 series on, such a manoeuvre may change lanes"
+-- advice = "a person must judge whether it did"
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, e.indicator = 'hazard' AS holds, mrm.is_on AS applies
+-- The lamps cannot show both: while the manoeuvre changes lanes, as from the 01 series on (not seen) it may, they show the side.
+SELECT drive_id, ego_id, t_ns, CASE WHEN e.indicator NOT IN ('left', 'right') THEN e.indicator = 'hazard' END AS holds, mrm.is_on AS applies,
+    CASE WHEN e.indicator IN ('left', 'right') THEN why('signals_to_side', {'side': e.indicator}) END AS reason
 FROM ego_state e
 LEFT JOIN (SELECT * FROM ego_mode WHERE mode = 'minimal_risk_manoeuvre') mrm USING (drive_id, ego_id, t_ns)

@@ -37,8 +37,10 @@
 -- why = "our default: this near to the ends of the log, the two seconds are not complete"
 
 -- @condition
--- The speed is filtered before it is differentiated, see ego_motion.
-SELECT m.drive_id, m.ego_id, m.t_ns, -m.accel_2s_mps2 AS observed, iso15622_limit(m.v_long_mps, $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
+-- An ego that reverses brakes when its speed along its heading rises: what counts is by how much it is slower than 2 s before, in either
+-- direction. Rounded, because the speed of 2 s before is computed back from the mean.
+SELECT m.drive_id, m.ego_id, m.t_ns, round((abs(m.v_long_mps - 2 * m.accel_2s_mps2) - abs(m.v_long_mps)) / 2, 9) AS observed,
+    iso15622_limit(abs(m.v_long_mps), $slow_mps2, $fast_mps2) + $tolerance_mps2 AS required,
     is_judged(m.accel_2s_mps2, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id

@@ -33,10 +33,11 @@
 
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion. An ego that only ends its acceleration does not brake: the growth of
--- the deceleration counts only up to the present deceleration.
+-- the deceleration counts only up to the present deceleration. A reversing ego brakes when the speed along its heading rises.
 SELECT m.drive_id, m.ego_id, m.t_ns, CASE WHEN m.accel_mps2 IS NOT NULL AND m.jerk_1s_mps3 IS NOT NULL
-        THEN least(-m.jerk_1s_mps3, greatest(-m.accel_mps2, 0.0)) END AS observed,
-    iso15622_limit(m.v_long_mps, $slow_mps3, $fast_mps3) AS required, m.jerk_1s_error_mps3 AS error,
+        THEN least(-way.sign * m.jerk_1s_mps3, greatest(-way.sign * m.accel_mps2, 0.0)) END AS observed,
+    iso15622_limit(abs(m.v_long_mps), $slow_mps3, $fast_mps3) AS required, m.jerk_1s_error_mps3 AS error,
     is_judged(m.jerk_1s_mps3, m.t_ns, c.t_start_ns, c.t_end_ns, $edge_s) AS applies
 FROM ego_motion m
 JOIN clock c ON c.drive_id = m.drive_id AND c.ego_id = m.ego_id
+CROSS JOIN LATERAL (SELECT CASE WHEN m.v_long_mps < -standing_mps() THEN -1 ELSE 1 END AS sign) way

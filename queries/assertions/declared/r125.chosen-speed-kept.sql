@@ -25,7 +25,9 @@
 -- why = "our default: speed control is that exact"
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, max(d.speed_mps) + $tolerance_mps AS required
+-- A choice whose value is no number may be of a higher speed: then only a speed that another choice allows is known to be kept.
+SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed,
+    CASE WHEN count(d.t_ns) = count(d.speed_mps) OR e.speed_mps <= max(d.speed_mps) + $tolerance_mps THEN max(d.speed_mps) + $tolerance_mps END AS required
 FROM ego_state e
 LEFT JOIN (
     -- A choice holds until the next one, and for a while longer if the next one is lower.

@@ -1,6 +1,6 @@
 -- title = "No unnecessary hard braking"
 -- breach = "Braked hard without need"
--- clause = "StVO 4(1) (R_G2 of Maierhofer et al. 2020): do not brake hard without a compelling reason"
+-- clause = "StVO 4(1) (R_G2 of Maierhofer et al. 2020): who drives ahead must not brake hard without a compelling reason; the formula does not ask whether anybody is behind, nor does this rule"
 -- hypothesis = "At every step, did the ego brake no harder than allowed, unless a vehicle ahead was too near or had itself braked, or somebody was in the way?"
 -- kind = "invariant"
 -- derivation = "model"

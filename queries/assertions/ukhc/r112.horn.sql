@@ -1,7 +1,7 @@
 -- title = "No horn while stationary"
 -- breach = "Horn while stationary"
 -- clause = "UKHC R112: you must not use your horn while stationary, except when another road user poses a danger"
--- hypothesis = "When the ego's horn sounded, was it moving?"
+-- hypothesis = "When the ego's horn began to sound, was the ego moving?"
 -- kind = "execution"
 -- derivation = "direct"
 -- severity = "minor"

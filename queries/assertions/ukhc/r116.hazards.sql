@@ -19,10 +19,10 @@
 -- why = "our default: the last of rolling to a stop is not driving"
 --
 -- [params.unrestricted_mps]
--- default = 31.0
+-- default = 22.36
 -- unit = "m/s"
--- why = "the limit of a dual carriageway without a lower one is 70 mph, 31.3 m/s"
--- source = "UKHC R124"
+-- why = "50 mph is 22.352 m/s: a dual carriageway with a higher limit is unrestricted"
+-- source = "UKHC R46: unrestricted dual carriageways where the speed limit exceeds 50 mph; Road Vehicles Lighting Regulations 1989, regulation 3 (not seen)"
 --
 -- [params.street_mps]
 -- default = 13.42

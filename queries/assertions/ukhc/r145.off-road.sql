@@ -1,7 +1,7 @@
 -- title = "Not on the footway"
 -- breach = "On the footway"
 -- clause = "UKHC R145: you must not drive on or over a pavement, footpath or bridleway, except to reach property or in an emergency"
--- hypothesis = "At every step, was the ego's outline off every footway, or may it have been on its way to property?"
+-- hypothesis = "At every step, was the ego's outline off every footway, or may it have been on its way to property, or in an emergency?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "major"
@@ -12,7 +12,7 @@
 -- observes = "reach onto the footway"
 -- merge_gap_s = 2.0
 -- tags = ["excuses", "standing"]
--- reads = ["ego_footway", "ego_state"]
+-- reads = ["ego_footway", "ego_mode", "ego_state"]
 -- requires = ["map", "registration", "lane_types", "ego_size"]
 --
 -- [params.tolerance_m]
@@ -30,6 +30,10 @@
 --
 -- [reasons.may_be_access]
 -- says = "slowly over the footway, from or to ground that the map does not have; it may be private property with access over the footway"
+--
+-- [reasons.may_be_emergency]
+-- says = "on the footway while an emergency manoeuvre was declared"
+-- advice = "a person must judge whether that was an emergency"
 
 -- @condition
 -- Ground that the map does not have may be property: an ego that comes from there slowly, or goes there, may cross the footway to get
@@ -55,8 +59,12 @@ footway_stretch AS (
     WHERE n.is_on_footway
     GROUP BY n.drive_id, n.ego_id, n.stretch_no
 )
-SELECT n.drive_id, n.ego_id, n.t_ns, n.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access, false) THEN $tolerance_m END AS required,
+SELECT n.drive_id, n.ego_id, n.t_ns, n.depth_m AS observed, CASE WHEN NOT coalesce(s.may_be_access OR n.is_on_footway AND x.t_ns IS NOT NULL, false) THEN $tolerance_m END AS required,
     CASE WHEN n.depth_m IS NULL THEN why('partly_off_map')
+        WHEN n.is_on_footway AND x.t_ns IS NOT NULL THEN why('may_be_emergency')
         WHEN s.may_be_access THEN why('may_be_access') END AS reason
 FROM numbered_step n
 LEFT JOIN footway_stretch s ON s.drive_id = n.drive_id AND s.ego_id = n.ego_id AND s.stretch_no = CASE WHEN n.is_on_footway THEN n.stretch_no END
+LEFT JOIN (
+    SELECT DISTINCT drive_id, ego_id, t_ns FROM ego_mode WHERE mode IN ('minimal_risk_manoeuvre', 'emergency_manoeuvre') AND is_on
+) x ON x.drive_id = n.drive_id AND x.ego_id = n.ego_id AND x.t_ns = n.t_ns

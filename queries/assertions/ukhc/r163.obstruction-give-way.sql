@@ -37,7 +37,8 @@
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
 -- [reasons.oncoming_braked]
--- says = "{object_id} braked at {decel_mps2:.1f} m/s2"
+-- says = "{object_id} braked at {decel_mps2:.1f} m/s2 and came {pet_s:.1f} s after the ego: it is not known whether it braked for the ego"
+-- advice = "a person must judge this"
 --
 -- [reasons.came_by]
 -- says = "{object_id} passed with {room_m:.2f} m between"
@@ -71,7 +72,8 @@ QUALIFY row_number() OVER (
 
 -- @condition
 -- The rule is known to be kept only if the manoeuvre was seen to its end: every vehicle placed, the ego back in its lane, and the log goes
--- on for pet_s after that.
+-- on for pet_s after that. An oncoming vehicle that came later and braked hard had to brake for the ego if it would otherwise have come
+-- within pet_s (forced_braking). If not, it may have braked for a light or others.
 WITH oncoming_braking AS (
     SELECT
         r.ref_id,
@@ -127,21 +129,23 @@ unplaced_vehicle AS (
 )
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS applies,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false) OR f.is_violation OR m.is_violation THEN false
-        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL THEN NULL
+        -- If it is not sure that the ego went round the vehicle, the rule can be kept, but not broken: it may have turned in at a junction.
+        WHEN coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation THEN CASE WHEN NOT may_be_no_overtake(o.status, o.sure) THEN false END
+        WHEN f.ref_id IS NOT NULL AND f.is_violation IS NULL OR m.ref_id IS NOT NULL OR coalesce(bool_or(c.decel_mps2 > $decel_mps2), false) THEN NULL
         WHEN o.begin_seen AND o.n_unplaced = 0 AND v.ref_id IS NULL AND count(c.object_id) = count(c.decel_mps2) AND k.t_end_ns >= o.t3_ns + ($pet_s * 1e9)::BIGINT THEN true
     END AS holds,
     CASE
-        WHEN coalesce(bool_or(c.pet_s < $pet_s OR c.decel_mps2 > $decel_mps2), false)
+        WHEN may_be_no_overtake(o.status, o.sure) AND (coalesce(bool_or(c.pet_s < $pet_s), false) OR f.is_violation OR m.is_violation) THEN overtake_doubt(o.vbp_id)
+        WHEN coalesce(bool_or(c.pet_s < $pet_s), false)
             -- The object of the rule is the standing vehicle: the reason names the oncoming one.
-            THEN coalesce(
-                min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
-                    FILTER (c.pet_s < $pet_s).words,
-                min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2})})
-                    FILTER (c.decel_mps2 > $decel_mps2).words)
+            THEN min({'pet_s': c.pet_s, 'words': met_reason(c.object_id, c.pet_s, CASE WHEN c.decel_mps2 > $decel_mps2 THEN c.decel_mps2 END)})
+                FILTER (c.pet_s < $pet_s).words
         WHEN m.ref_id IS NOT NULL AND f.is_violation IS DISTINCT FROM true 
             THEN CASE WHEN m.least.passes THEN why('came_by', m.least) ELSE why('ran_into', m.least) END
         WHEN f.words IS NOT NULL THEN f.words
+        WHEN coalesce(bool_or(c.decel_mps2 > $decel_mps2), false)
+            THEN min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2, 'pet_s': c.pet_s})})
+                FILTER (c.decel_mps2 > $decel_mps2).words
         WHEN o.t3_ns IS NULL THEN why('return_unseen')
         WHEN v.ref_id IS NOT NULL THEN why('object_lacks_unbroken', v.unplaced)
         WHEN NOT o.begin_seen THEN why('pull_out_unseen')
@@ -155,4 +159,4 @@ LEFT JOIN close_meeting m USING (ref_id)
 LEFT JOIN unplaced_vehicle v USING (ref_id)
 LEFT JOIN (FROM conflict WHERE ego_first AND abs(angle_rad) >= $oncoming_rad) c
     ON c.drive_id = r.drive_id AND c.ego_id = r.ego_id AND c.t_ego_in_ns >= r.t_ns AND c.t_ego_in_ns <= r.t_end_ns
-GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.unplaced
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.vbp_id, o.status, o.sure, o.v_vbp_mps, o.begin_seen, o.n_unplaced, o.unplaced_reason, o.t3_ns, k.t_end_ns, f.ref_id, f.is_violation, f.words, m.ref_id, m.is_violation, m.least, v.ref_id, v.unplaced

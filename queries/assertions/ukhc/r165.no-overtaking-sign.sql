@@ -21,8 +21,10 @@ FROM overtake o
 
 -- @condition
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps > standing_mps() AS applies,
-    CASE WHEN o.begin_seen THEN NOT p.no_overtaking END AS holds,
-    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN p.no_overtaking IS NULL THEN why('sign_unknown') END AS reason
+    -- If it is not sure that the manoeuvre is an overtake, the rule can be kept, but not broken.
+    CASE WHEN o.begin_seen AND NOT (p.no_overtaking AND may_be_no_overtake(o.status, o.sure)) THEN NOT p.no_overtaking END AS holds,
+    CASE WHEN NOT o.begin_seen THEN why('overtake_begin_unseen') WHEN p.no_overtaking IS NULL THEN why('sign_unknown')
+        WHEN p.no_overtaking AND may_be_no_overtake(o.status, o.sure) THEN overtake_doubt(o.vbp_id) END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 LEFT JOIN overtake_place p USING (drive_id, ego_id, occurrence)

@@ -25,6 +25,10 @@
 -- [reasons.other_unplaced]
 -- says = "another vehicle cannot be placed, and may have been passed"
 --
+-- [reasons.passed_standing]
+-- says = "{object_id} stood, and it is not known whether it waited in the traffic or had broken down"
+-- advice = "a person must judge this"
+--
 -- [reasons.passed_on_side]
 -- says = "ego at {ego_speed_mps:.1f} m/s, the other {speed_mps:.1f} m/s on its {side}"
 
@@ -32,10 +36,11 @@
 SELECT drive_id, ego_id, t_ns, object_id, occurrence FROM passing WHERE coalesce(ego_passes AND NOT same_lane, true)
 
 -- @condition
--- An ego that leaves by an exit lane may pass the vehicles that stay.
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.side <> overtaking_side(m.handedness) AS holds,
+-- An ego that leaves by an exit lane may pass the vehicles that stay. To go past a vehicle that has broken down is not to undertake it.
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.side <> overtaking_side(m.handedness) OR CASE WHEN p.speed_mps > standing_mps() THEN false END AS holds,
     NOT (p.ego_speed_mps < $congestion_mps AND p.speed_mps < $congestion_mps) AND n.lane_type NOT IN ('exit', 'offRamp') AS applies,
     CASE WHEN p.ego_passes IS NULL THEN why('other_unplaced')
+        WHEN p.side = overtaking_side(m.handedness) AND p.speed_mps <= standing_mps() THEN why('passed_standing', {'object_id': r.object_id})
         WHEN p.ego_speed_mps IS NOT NULL AND p.speed_mps IS NOT NULL AND p.side IS NOT NULL
             THEN why('passed_on_side', {'ego_speed_mps': p.ego_speed_mps, 'speed_mps': p.speed_mps, 'side': p.side}) END AS reason
 FROM reference r

@@ -1,7 +1,7 @@
 -- title = "Exit taken after signalling to leave"
 -- breach = "Exit not taken after signalling to leave"
 -- clause = "UKHC R103: do not mislead others by your signals (physical postcondition of Harper et al. 2021)"
--- hypothesis = "When the ego signalled towards an exit beside it, was it in the exit lane where the exit parts from the road?"
+-- hypothesis = "When the ego signalled towards an exit beside it, and not only for a change to the lane beside the exit, was it in the exit lane where the exit parts from the road?"
 -- kind = "postcondition"
 -- subtype = "physical"
 -- derivation = "direct"
@@ -9,14 +9,29 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["exit_passed", "indicator_on"]
+-- reads = ["exit_passed", "indicator_on", "lane_change"]
 -- requires = ["map", "registration", "indicator"]
+--
+-- [params.off_s]
+-- default = 5.0
+-- unit = "s"
+-- why = "our default, as in r103.signal-off: a signal that goes off this soon after a lane change was for that change"
 
 -- @reference
+-- A signal for a change to the lane beside the exit is no signal to leave.
+WITH lane_change_signal AS (
+    SELECT i.drive_id, i.ego_id, i.occurrence, max(l.t_start_ns) AS t_start_ns
+    FROM indicator_on i
+    JOIN lane_change l ON l.drive_id = i.drive_id AND l.ego_id = i.ego_id AND l.side = i.side AND l.t_start_ns >= i.t_on_ns
+    WHERE l.t_start_ns <= i.t_off_ns AND i.t_off_ns <= coalesce(l.t_done_ns, l.t_start_ns) + ($off_s * 1e9)::BIGINT
+    GROUP BY ALL
+)
 SELECT x.drive_id, x.ego_id, greatest(max(i.t_on_ns), x.t_near_ns) AS t_ns, x.side, x.occurrence
 FROM exit_passed x
 JOIN indicator_on i ON i.drive_id = x.drive_id AND i.ego_id = x.ego_id AND i.side = x.side
     AND i.t_on_ns <= coalesce(x.t_gore_ns, i.t_on_ns) AND i.t_off_ns >= x.t_near_ns
+LEFT JOIN lane_change_signal c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.occurrence = i.occurrence
+WHERE coalesce(c.t_start_ns >= x.t_near_ns, true)
 GROUP BY x.drive_id, x.ego_id, x.t_near_ns, x.side, x.occurrence
 
 -- @anchor
