@@ -68,11 +68,6 @@ class Task:
     settings: JudgeSettings
     attempts: int = 0
 
-    @property
-    def log_bytes(self) -> int:
-        """The size of all logs in bytes."""
-        return sum(drive.size for drive in self.drives)
-
 
 @dataclass(frozen=True)
 class Receipt:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -114,19 +113,6 @@ class LocalFolder:
     def fetch(self, name: str, folder: Path) -> Path:  # noqa: ARG002 - as in `ResultStore`
         """See `ResultStore.fetch`."""
         return self.root / name
-
-    def move_into_store(self, name: str, finished: Path) -> None:
-        """Move a complete local file into the store under a name."""
-        path = self.root / name
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
-            shutil.move(finished, temporary)
-            _sync_file(temporary)
-            temporary.replace(path)
-            _sync_folder(path.parent)
-        except OSError as error:
-            raise self._output_error(error) from error
 
     def remove_unfinished_files(self) -> None:
         """Remove unfinished files of killed writers. No process may write meanwhile."""

@@ -265,17 +265,14 @@ def first_unexpected_merged_case(
     return next(((case, message) for case, rows in found if (message := outcome_difference(case, rows))), None)
 
 
-def first_problem_and_reason_codes_of_merged_cases(
-    rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
-) -> tuple[str, set[str]]:
+def first_problem_and_reason_codes_of_merged_cases(rule: Rule, cases: Sequence[Case]) -> tuple[str, set[str]]:
     """Judge all cases of a rule in one database; return the first problem ('' for none), and all reason codes.
 
-    `keys`: key column, such as `drive_id` -> what a case is in the merged database, in words. For each column, the cases are merged and
-    judged once, and this column distinguishes them. Errors: `RuleError`.
+    For each key column of `MERGE_KEYS`, the cases are merged and judged once, and this column distinguishes them. Errors: `RuleError`.
     """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()
-    for key, where in keys.items():
+    for key, where in merged_cases.MERGE_KEYS.items():
         for group in merged_cases.mergeable_groups(everybody, key):
             outcome = merged_cases.judge([rule], merged_cases.merge_cases(group, key), group[0].params)[rule.id]
             for row in [*outcome.verdicts, *outcome.findings]:

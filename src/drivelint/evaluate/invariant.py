@@ -100,16 +100,13 @@ def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, s
         same_key += " AND p.profile = v.profile"
     kept = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
-        numbered = _steps_with_episode_sql("SELECT * FROM _steps WHERE applies IS DISTINCT FROM false")
+        source = "SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"
+        numbered = statement("judging/steps_with_episode", source=source)
         kept = statement("judging/aged", steps_with_episode=numbered)
     grid = "_step_to_judge AS (SELECT * FROM _asked)"
     if steps != "asked":
         grid = _grid_sql(rule, skips_subjects, steps == "unsettled", check_engagement)
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
-
-
-def _steps_with_episode_sql(source: str) -> str:
-    return statement("judging/steps_with_episode", source=source)
 
 
 def insert_unknowns_of_lost_objects_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:

@@ -20,15 +20,14 @@ MOST_DISTANCE_BETWEEN_MATCHED_FINDINGS_M: Final = 5.0
 UNCHANGED_MARGIN_TOLERANCE: Final = 0.01
 UNCHANGED_INTERVAL_TOLERANCE_S: Final = 0.1
 """Copies of the constants in `drivelint.gate`, which this package must not import. A test checks that they are equal."""
-CAUSES: Final = ("drive", "software", "rule", "parameters", "data", "map", "tool")
-"""The possible causes of a difference between two audits. In order: only one audit has the drive; the tag `release`, the version of the
-rule, its parameters, the content of the log, the map, or the version of drivelint differs."""
 
 
 class DifferenceCount(NamedTuple):
     """The number of findings of a rule with the same standing (new, fixed, …) and the same causes.
 
-    `causes`: what is known to differ. If it has one cause and `causes_not_known` is empty, that cause explains the difference.
+    `causes`: what is known to differ: `drive` (only one audit has it), `software` (the tag `release`), `rule` (its version), `parameters`
+    (of the rule), `data` (the content of the log), `map`, or `tool` (the version of drivelint). If it has one cause and `causes_not_known`
+    is empty, that cause explains the difference.
     """
 
     rule_id: str

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from drivelint.engine.robustness.copies import MeasurementErrors
     from drivelint.result.request import RunRequest
     from drivelint.result.text import Row
+
+_MARGIN_TOLERANCE: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,16 +87,14 @@ class Judge:
         return EgoRows(verdicts, findings, steps[-1])
 
 
-def matching_finding(findings: Sequence[Row], finding: Row, *, margin_tolerance: float = 1e-6) -> Row | None:
+def matching_finding(findings: Sequence[Row], finding: Row) -> Row | None:
     """Return the finding with the same ego, rule, profile, object, worst step and margin as `finding`; None if there is none."""
     same = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
     for row in findings:
-        if all(row[key] == finding[key] for key in same) and _are_margins_close(
-            row["margin"], finding["margin"], margin_tolerance
-        ):
+        if all(row[key] == finding[key] for key in same) and _are_margins_close(row["margin"], finding["margin"]):
             return row
     return None
 
 
-def _are_margins_close(a: float | None, b: float | None, tolerance: float) -> bool:
-    return a == b if a is None or b is None else abs(a - b) <= tolerance
+def _are_margins_close(a: float | None, b: float | None) -> bool:
+    return a == b if a is None or b is None else abs(a - b) <= _MARGIN_TOLERANCE

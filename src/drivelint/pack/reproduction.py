@@ -103,7 +103,6 @@ def param_values_by_rule(rules: Iterable[Rule], check_request: RunRequest) -> di
 def evidence_of_findings(
     result: Result,
     check_request: RunRequest,
-    memory: int | None = DEFAULT_MEMORY_BYTES,
     loaded_rules: Sequence[Rule] = (),
 ) -> Evidence:
     """Return the data that reproduce the numbers of each finding. `check_request` has the paths of the logs. `loaded_rules`: the rules of
@@ -116,12 +115,12 @@ def evidence_of_findings(
         drive, _ = open_judged_drive_and_source_text(
             trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map
         )
-        found |= _evidence_of_drive(drive, mine, rules, check_request, memory)
+        found |= _evidence_of_drive(drive, mine, rules, check_request)
     return found
 
 
 def _evidence_of_drive(
-    drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], check_request: RunRequest, memory: int | None
+    drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> Evidence:
     """Return the evidence of the findings of one ego in one drive."""
     mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
@@ -133,9 +132,11 @@ def _evidence_of_drive(
             rows = [row for row in findings if row["rule_id"] == rule.id]
             found.update(_evidence_of_rule(con, rule, params[rule.id], rows))
 
-    with store.temporary_database(memory) as con:
+    with store.temporary_database(DEFAULT_MEMORY_BYTES) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
-        session = JudgingSession(con, mine, params, None, observers=[gather_evidence], memory=MemoryLimit(con, memory))
+        session = JudgingSession(
+            con, mine, params, None, observers=[gather_evidence], memory=MemoryLimit(con, DEFAULT_MEMORY_BYTES)
+        )
         session.judge([drive])
         session.close()
     return found

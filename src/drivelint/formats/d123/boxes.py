@@ -27,6 +27,7 @@ _COLUMNS: Final = {
     "label": pa.list_(pa.int32()),
     "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
 }
+_LEAST_MOVE_M: Final = 0.5
 DERIVED_VELOCITY_TOLERANCE_MPS: Final = 1e-6
 """A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
 _LEAST_BOXES_TO_DETECT_DERIVED_VELOCITIES: Final = 20
@@ -178,14 +179,14 @@ def _set_velocities_to_nan(states: States, rows: Mask) -> None:
         states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
-def _any_actor_moves(states: States, least_m: float = 0.5) -> bool:
-    """Return whether any actor moves by more than `least_m` in x or y."""
+def _any_actor_moves(states: States) -> bool:
+    """Return whether any actor moves by more than `_LEAST_MOVE_M` in x or y."""
     n = len(states.ids)
     for values in states.place:
         low, high = np.full(n, np.inf), np.full(n, -np.inf)
         np.fmin.at(low, states.actor, values)
         np.fmax.at(high, states.actor, values)
-        if (high - low > least_m).any():
+        if (high - low > _LEAST_MOVE_M).any():
             return True
     return False
 

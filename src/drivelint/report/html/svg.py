@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+_MARGIN_SHARE: Final = 0.06
+"""The margin of an axis on each side, as a share of the range of its values."""
 _AXIS_UNCUT_UP_TO_N_DECIDING_SPANS: Final = 6.0
 """An axis that is longer than this many times the distance between the deciding values is cut."""
 _CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES: Final = 1.5
@@ -64,14 +66,11 @@ class Axis(NamedTuple):
         return [(svg_number(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
 
 
-def axis_around(values: Iterable[float], drawn_start: float, drawn_end: float, room: float = 0.06) -> Axis:
-    """Return an axis that shows all values, with a margin on both sides; `room`: the margin as a share of the values' range.
-
-    It is drawn from `drawn_start` to `drawn_end`.
-    """
+def axis_around(values: Iterable[float], drawn_start: float, drawn_end: float) -> Axis:
+    """Return an axis that shows all values, with a margin on both sides. It is drawn from `drawn_start` to `drawn_end`."""
     found = list(values)
     low, high = min(found), max(found)
-    pad = (high - low) * room or max(abs(high) * 0.1, 0.5)
+    pad = (high - low) * _MARGIN_SHARE or max(abs(high) * 0.1, 0.5)
     return Axis(low - pad, high + pad, drawn_start, drawn_end)
 
 
