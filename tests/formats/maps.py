@@ -36,7 +36,7 @@ def links(environment: MapTables) -> list[tuple[str, str]]:
     return values(environment, "lane_link", "from_id to_id")
 
 
-def side(environment: MapTables) -> tuple[str, str]:
+def hand(environment: MapTables) -> tuple[str, str]:
     """Return the side that is driven on, and what tells it."""
     return environment.handedness, environment.handedness_source
 

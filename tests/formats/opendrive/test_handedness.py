@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.formats.maps import checks, lanelets, messages, points, side
+from tests.formats.maps import checks, hand, lanelets, messages, points
 from tests.formats.opendrive.signal_text import WIDTH
 from tests.formats.opendrive.xodr import geometry, lane, load, road, section
 
@@ -27,7 +27,7 @@ CONNECTING = road("10", junction="9")
 
 def test_the_option_comes_first() -> None:
     environment = load(road(attributes='rule="RHT"'), handedness="lht", voted_handedness="rht")
-    assert side(environment) == ("lht", "option")
+    assert hand(environment) == ("lht", "option")
     assert "handedness_disagrees" in checks(environment)
     assert lanelets(environment)["1.0.1"]["along_road"] == 1
 
@@ -53,7 +53,7 @@ def test_a_doubt_says_what_would_have_the_other_side(
 
 def test_then_the_attribute() -> None:
     environment = load(road(attributes='rule="LHT"'), CONNECTING, junction(("start", -1)), voted_handedness="rht")
-    assert side(environment) == ("lht", "attribute")
+    assert hand(environment) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
 
@@ -62,29 +62,29 @@ def test_then_the_attribute() -> None:
 )
 def test_then_the_junctions(contact: str, to: int, handedness: str) -> None:
     environment = load(road(), CONNECTING, junction((contact, to)))
-    assert side(environment) == (handedness, "junctions")
+    assert hand(environment) == (handedness, "junctions")
     assert "handedness_disagrees" not in checks(environment)
 
 
 def test_junctions_that_list_both_ends_say_nothing() -> None:
     environment = load(road(), CONNECTING, junction(("start", -1), ("end", -1)), voted_handedness="lht")
-    assert side(environment) == ("lht", "traces")
+    assert hand(environment) == ("lht", "traces")
 
 
 def test_then_the_lanes_own_travel_direction() -> None:
     environment = load(
         road(lanes=section(0, travelling(1, "forward"), travelling(-1, "backward"))), voted_handedness="rht"
     )
-    assert side(environment) == ("lht", "attribute")
+    assert hand(environment) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
 
 def test_then_the_traces_then_the_default_with_a_warning() -> None:
     voted = load(road(), voted_handedness="lht")
-    assert side(voted) == ("lht", "traces")
+    assert hand(voted) == ("lht", "traces")
     assert "handedness_default" not in checks(voted)
     guessed = load(road())
-    assert side(guessed) == ("rht", "default")
+    assert hand(guessed) == ("rht", "default")
     assert checks(guessed)["handedness_default"] == [None]
 
 
