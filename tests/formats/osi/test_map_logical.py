@@ -68,7 +68,7 @@ def test_lanes_are_cut_to_their_span_and_markings_change_on_the_way(way: int) ->
     assert values(environment, "lanelet", "length_m") == [50.0]
     assert values(environment, "lane_point", "x_m", k=0) == [20.0 if way == AHEAD else 70.0]
     assert sorted(values(environment, "lane_boundary", "side marking s_start_m s_end_m")) == (
-        [("left", "solid", 0.0, 20.0), ("left", "broken", 20.0, 50.0), ("right", "solid", 0.0, 50.0)]
+        [("left", "broken", 20.0, 50.0), ("left", "solid", 0.0, 20.0), ("right", "solid", 0.0, 50.0)]
         if way == AHEAD
         else [("left", "solid", 0.0, 50.0), ("right", "broken", 0.0, 30.0), ("right", "solid", 30.0, 50.0)]
     )
