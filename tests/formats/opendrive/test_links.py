@@ -30,16 +30,18 @@ def joined(end: str, other: str, contact: str, kind: str = "road") -> str:
     return f'<{end} elementType="{kind}" elementId="{other}"{at}/>'
 
 
-def two_roads(first: str, second: str, contact: str = "start", *, back: str | None = None, **at: float) -> MapTables:
+def two_roads(
+    first: str, second: str, contact: str = "start", *, back: str | None = None, at: str = line(100)
+) -> MapTables:
     """Return road 1 that leads to road 2 with these lanes; `back`: the end of road 1 to which road 2 leads with its end."""
     link = "" if back is None else joined("successor", "1", back)
     return load(
         road("1", lanes=section(0, first), link=joined("successor", "2", contact)),
-        road("2", line(**{"x": 100.0, **at}), lanes=section(0, second), link=link),
+        road("2", at, lanes=section(0, second), link=link),
     )
 
 
-FACING = {"x": 200.0, "heading": math.pi}
+FACING = line(200, heading=math.pi)
 
 
 def test_sections_of_one_road_are_linked_in_the_direction_of_travel() -> None:
@@ -66,16 +68,16 @@ def test_one_link_whoever_declares_it(told_by: str) -> None:
 def test_roads_that_meet_end_to_end_swap_the_sign_of_their_lanes(contact: str) -> None:
     environment = load(
         road("1", lanes=section(0, linked(-1, successor=1), linked(1, successor=-1)), link=joined("successor", "2", contact)),
-        road("2", line(**FACING), lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)), link=joined("successor", "1", "end")),
+        road("2", FACING, lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)), link=joined("successor", "1", "end")),
     )  # fmt: skip
     assert set(links(environment)) == {("1.0.-1", "2.0.1"), ("2.0.-1", "1.0.1")}
     assert "link_gap" not in checks(environment)
 
 
 def test_a_contact_that_is_not_said_is_the_end_that_names_the_road() -> None:
-    environment = two_roads(linked(-1, successor=1), lane(1), "", back="", **FACING)
+    environment = two_roads(linked(-1, successor=1), lane(1), "", back="", at=FACING)
     assert set(links(environment)) == {("1.0.-1", "2.0.1")}
-    unsaid = two_roads(linked(-1, successor=1), lane(1), "", **FACING)
+    unsaid = two_roads(linked(-1, successor=1), lane(1), "", at=FACING)
     assert checks(unsaid)["missing_link"] == ["1.0.-1"]
 
 
@@ -153,7 +155,7 @@ def test_a_link_that_the_map_forgot_is_named() -> None:
 
 
 def test_a_link_over_a_gap_is_kept_and_named_with_its_distance() -> None:
-    environment = two_roads(linked(-1, successor=-1), linked(-1), x=102.0)
+    environment = two_roads(linked(-1, successor=-1), linked(-1), at=line(102))
     assert set(links(environment)) == {("1.0.-1", "2.0.-1")}
     (message,) = messages(environment, "link_gap")
     assert "2.00 m" in message
