@@ -13,7 +13,7 @@ from tests.formats.opendrive.xodr import LINE, lane, load, road, section
 
 
 def limits(environment: Any, name: str) -> list[Any]:
-    return values(environment, "speed_limit", "s_start_m s_end_m limit_mps source", digits=4, lanelet_id=name)
+    return values(environment, "speed_limit", "s_start_m s_end_m limit_mps source", lanelet_id=name)
 
 
 def marks(environment: Any, name: str, side: str) -> list[Any]:
@@ -50,10 +50,10 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
     inside = WIDTH + '<speed sOffset="20" max="30" unit="mph"/><speed sOffset="40" max="undefined"/>'
     environment = load(road(lanes=section(0, lane(1), lane(-1, inside)), more=types))
     assert limits(environment, "1.0.-1") == [
-        (0, 20, 13.8889, "road_type"), (20, 40, 13.4112, "lane"), (40, 60, 13.8889, "road_type"), (60, 90, None, "road_type"),
+        (0, 20, 13.888889, "road_type"), (20, 40, 13.4112, "lane"), (40, 60, 13.888889, "road_type"), (60, 90, None, "road_type"),
     ]  # fmt: skip
     # the other lane is driven against the stations
-    assert limits(environment, "1.0.1") == [(10, 40, None, "road_type"), (40, 100, 13.8889, "road_type")]
+    assert limits(environment, "1.0.1") == [(10, 40, None, "road_type"), (40, 100, 13.888889, "road_type")]
     assert lanelets(environment)["1.0.1"]["road_type"] == "town"
 
 

@@ -178,8 +178,8 @@ def test_speed_limits_for_all_vehicles() -> None:
             valid.type = kind
             if vehicle is not None:
                 valid.vehicle_type = vehicle
-    assert values(road.load(), "speed_limit", "lanelet_id s_start_m s_end_m limit_mps source", digits=4) == [
-        ("1", 0.0, 60.0, 13.8889, "lane"), ("1", 60.0, 100.0, 13.4112, "lane"), ("2", 75.0, 100.0, 22.2222, "lane"),
+    assert values(road.load(), "speed_limit", "lanelet_id s_start_m s_end_m limit_mps source") == [
+        ("1", 0.0, 60.0, 13.888889, "lane"), ("1", 60.0, 100.0, 13.4112, "lane"), ("2", 75.0, 100.0, 22.222222, "lane"),
     ]  # fmt: skip
 
 

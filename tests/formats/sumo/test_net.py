@@ -119,7 +119,7 @@ def test_where_the_ways_meet_there_is_no_wedge() -> None:
 )
 def test_signs_of_the_lesser_road(kind: str, stem: tuple[str, str], sign: str | None) -> None:
     found = tee(kind, stem)
-    signs = values(found, "traffic_signal", "kind lanelet_id x_m y_m lane_s_m", digits=4)
+    signs = values(found, "traffic_signal", "kind lanelet_id x_m y_m lane_s_m")
     assert signs == ([(sign, "st_0", 56.6, -10.0, 50.0)] if sign else [])
     lines = values(found, "stop_line", "lanelet_id source")
     assert lines == ([("st_0", "connection")] if sign == "stop" else [])
