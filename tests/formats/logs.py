@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import dedent
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from drivelint.drive.trace import IngestOptions, Trace
 from drivelint.formats import read_trace
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 LONG = """
 description = "long table of the tests"
@@ -70,6 +73,30 @@ def quality(trace: Trace) -> dict[str, dict[str, Any]]:
     found = {row["check_id"]: row for row in rows}
     assert len(found) == len(rows), [row["check_id"] for row in rows]
     return found
+
+
+def messages(trace: Trace, check: str) -> list[str]:
+    """Return what the rows of a check say, however many."""
+    return [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == check]
+
+
+def size(trace: Trace, actor: str = "ego") -> tuple[float | None, ...]:
+    """Return length, width and height of an actor."""
+    row = actors(trace)[actor]
+    return row["length_m"], row["width_m"], row["height_m"]
+
+
+def egos(trace: Trace) -> list[str]:
+    return [name for name, row in actors(trace).items() if row["is_ego"]]
+
+
+def classes(trace: Trace) -> dict[str, str | None]:
+    return {name: row["actor_class"] for name, row in actors(trace).items()}
+
+
+def without_id(trace: Trace, table: str = "actor_state") -> pa.Table:
+    """Return a table without the id of the drive, which is that of the file."""
+    return trace.tables[table].drop_columns("drive_id")
 
 
 def log(trace: Trace) -> dict[str, Any]:

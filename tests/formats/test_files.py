@@ -78,9 +78,8 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
 
 
 def test_every_file_of_a_result_that_has_the_suffix_of_a_log_is_known() -> None:
-    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(
-        RESULT_GLOBS_WITH_LOG_SUFFIX
-    )
+    of_logs = {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}}
+    assert of_logs == set(RESULT_GLOBS_WITH_LOG_SUFFIX)
 
 
 def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None:
@@ -142,13 +141,8 @@ def test_a_link_to_a_folder_is_named_and_not_followed(tmp_path: Path) -> None:
         folder.mkdir(parents=True)
     for file in (logs / "a.csv", other / "b.csv", drive / "actor_state.parquet"):
         file.write_text("x")
-    for name, target in (
-        ("round", logs),
-        ("inside", logs / "sub"),
-        ("linked", other),
-        ("drive", drive),
-        ("up", tmp_path),
-    ):
+    links = {"round": logs, "inside": logs / "sub", "linked": other, "drive": drive, "up": tmp_path}
+    for name, target in links.items():
         (logs / name).symlink_to(target)
     # what lies within the folder is searched anyway, and a folder that is one drive needs no search
     assert names(expand_traces([str(logs)])) == ["up", "drive", "a.csv", "linked"]
@@ -240,6 +234,7 @@ def test_a_canonical_folder_is_one_drive(tmp_path: Path) -> None:
     [
         ("missing.csv", TraceError, r"missing\.csv: no such file or folder"),
         ("none*.csv", TraceError, r"none\*.csv: no file matches this pattern"),
+        (".", TraceError, "no trace in this folder"),
         (" ", UsageError, "an empty trace name"),
         ("s3://bucket/drive.mcap", UsageError, "URIs are not supported"),
         ("x" * 5000, TraceError, "no such file"),
@@ -251,11 +246,6 @@ def test_what_matches_nothing(
     monkeypatch.chdir(tmp_path)
     with pytest.raises(kind, match=message):
         expand_traces([text])
-
-
-def test_a_folder_without_traces(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match="no trace in this folder"):
-        expand_traces([str(tmp_path)])
 
 
 def test_a_drive_is_called_by_stem_and_content(tmp_path: Path) -> None:
@@ -293,11 +283,7 @@ def test_files_that_are_no_trace(tmp_path: Path, name: str, content: bytes, mess
     assert "\n" not in str(error.value)
 
 
-def test_a_file_that_went_away(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match="no such file"):
-        read(tmp_path / "a.csv")
-
-
-def test_a_folder_that_is_no_drive(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"not a folder of one drive"):
-        read(tmp_path)
+def test_a_file_that_went_away_and_a_folder_that_is_no_drive(tmp_path: Path) -> None:
+    for path, message in ((tmp_path / "a.csv", "no such file"), (tmp_path, "not a folder of one drive")):
+        with pytest.raises(TraceError, match=message):
+            read(path)

@@ -10,7 +10,8 @@ from drivelint.errors import ExitCode, MapError, UsageError
 from drivelint.formats import load_map, read_source
 from drivelint.formats import map_registry as registry
 from drivelint.road.map_reader import MapSource
-from tests.formats.opendrive.xodr import LINE, checks, geometry, lane, lanelets, load, road, rows, section, xodr
+from tests.formats.maps import checks, lanelets, rows
+from tests.formats.opendrive.xodr import LINE, geometry, lane, load, road, section, xodr
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -116,9 +117,7 @@ def test_a_map_without_a_lane_says_why() -> None:
 def test_a_road_that_cannot_be_read_is_named_and_the_others_stay(broken: str, says: str) -> None:
     environment = load(road("1"), broken)
     assert set(lanelets(environment)) == {"1.0.1", "1.0.-1"}
-    row = next(
-        r for r in rows(environment, "map_quality") if r["severity"] == "error" and r["check_id"] == "invalid_road"
-    )
+    row = rows(environment, "map_quality", severity="error", check_id="invalid_road")[0]
     assert says in row["message"]
     assert row["lanelet_id"] == ("1" if broken == road("1") else "2")
 

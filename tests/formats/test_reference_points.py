@@ -64,14 +64,8 @@ def pose(k: int) -> Pose:
     t_s = k * STEP_S
     yaw = 0.3 + YAW_RATE * t_s
     speed = RADIUS * YAW_RATE
-    return Pose(
-        t_s,
-        100.0 + RADIUS * math.sin(yaw),
-        50.0 - RADIUS * math.cos(yaw),
-        yaw,
-        speed * math.cos(yaw),
-        speed * math.sin(yaw),
-    )
+    x, y = 100.0 + RADIUS * math.sin(yaw), 50.0 - RADIUS * math.cos(yaw)
+    return Pose(t_s, x, y, yaw, speed * math.cos(yaw), speed * math.sin(yaw))
 
 
 TRUTH = [pose(k) for k in range(N)]
@@ -92,9 +86,8 @@ def commonroad(tmp_path: Path, *, shape: str, ahead: float) -> Trace:
 
 
 def commonroad_centre(tmp_path: Path) -> Trace:
-    return commonroad(
-        tmp_path, shape=f"<rectangle><length>{LENGTH}</length><width>{WIDTH}</width></rectangle>", ahead=0.0
-    )
+    size = f"<length>{LENGTH}</length><width>{WIDTH}</width>"
+    return commonroad(tmp_path, shape=f"<rectangle>{size}</rectangle>", ahead=0.0)
 
 
 def commonroad_rear_axle(tmp_path: Path) -> Trace:
@@ -183,20 +176,10 @@ def sumo(tmp_path: Path) -> Trace:
     for p in TRUTH:
         x, y = p.point(LENGTH / 2)
         angle = math.degrees(math.pi / 2 - p.yaw) % 360.0
-        rows.append(
-            {
-                "time": f"{p.t_s:.2f}",
-                "id": "1",
-                "x": repr(x),
-                "y": repr(y),
-                "angle": repr(angle),
-                "type": "t",
-                "speed": 8.0,
-            }
-        )
-    put(
-        tmp_path / "r.rou.xml", f'<routes><vType id="t" vClass="passenger" length="{LENGTH}" width="{WIDTH}"/></routes>'
-    )
+        place = {"x": repr(x), "y": repr(y), "angle": repr(angle)}
+        rows.append({"time": f"{p.t_s:.2f}", "id": "1", **place, "type": "t", "speed": 8.0})
+    types = f'<vType id="t" vClass="passenger" length="{LENGTH}" width="{WIDTH}"/>'
+    put(tmp_path / "r.rou.xml", f"<routes>{types}</routes>")
     return read(put(tmp_path / "a.xml", fcd_text.xml(rows)), ego="1")
 
 
@@ -253,18 +236,8 @@ def table_left_handed(tmp_path: Path) -> Trace:
 
 def canonical(tmp_path: Path) -> Trace:
     """A converted log: the tables of the model, box centres."""
-    rows = [
-        {
-            "t_ns": round(p.t_s * 1e9),
-            "actor_id": "1",
-            "x_m": p.x,
-            "y_m": p.y,
-            "yaw_rad": p.yaw,
-            "vx_mps": p.vx,
-            "vy_mps": p.vy,
-        }
-        for p in TRUTH
-    ]
+    names = "x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"
+    rows = [{"t_ns": round(p.t_s * 1e9), "actor_id": "1", **dict(zip(names, p[1:], strict=True))} for p in TRUTH]
     pq.write_table(pa.Table.from_pylist(rows), tmp_path / "a.parquet")
     return read(tmp_path / "a.parquet", ego="1")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,11 +13,8 @@ from pyproj import Transformer
 from drivelint.errors import MapError
 from drivelint.formats.argoverse2.cities import CITY_ORIGINS_IN_UTM, frame_of_city
 from tests.formats.argoverse2.argoverse_log import load, points, road, segment, straight
-from tests.formats.opendrive.xodr import checks, lanelets, rows
-from tests.formats.opendrive.xodr import points as lane_points
-
-if TYPE_CHECKING:
-    from drivelint.road.map_reader import MapTables
+from tests.formats.maps import checks, hand, lanelet, lanelets, links, messages, rows, values
+from tests.formats.maps import points as lane_points
 
 
 def two_ways(**more: Any) -> dict[str, Any]:
@@ -34,38 +31,27 @@ def two_ways(**more: Any) -> dict[str, Any]:
 def test_lanes_and_their_neighbours() -> None:
     """Which way a neighbour is driven, the file does not say."""
     environment = load(two_ways())
-    found = lanelets(environment)
-    beside = {
-        name: [found[name][key] for key in ("left_id", "left_against", "right_id", "right_against")] for name in found
-    }
-    assert beside == {
-        "1": ["3", True, "2", False], "2": ["1", False, "4", False],
-        "3": ["1", True, None, None], "4": ["2", False, None, None],
-    }  # fmt: skip
-    assert {name: (row["lane_type"], row["drivable"], row["along_road"]) for name, row in found.items()} == {
-        "1": ("driving", True, 1), "2": ("bus", True, 1), "3": ("driving", True, -1), "4": ("biking", False, 1),
-    }  # fmt: skip
-    assert len({row["road_id"] for row in found.values()}) == 1
-    assert (found["1"]["length_m"], found["1"]["width_m"]) == (pytest.approx(200.0), pytest.approx(4.0))
-    (about,) = rows(environment, "environment")
-    assert (about["format"], about["handedness"], about["handedness_source"]) == ("argoverse2", "rht", "lanes")
-    assert (
-        rows(environment, "speed_limit") == rows(environment, "traffic_signal") == rows(environment, "stop_line") == []
-    )
+    columns = "lanelet_id left_id left_against right_id right_against lane_type drivable along_road"
+    assert sorted(values(environment, "lanelet", columns)) == [
+        ("1", "3", True, "2", False, "driving", True, 1), ("2", "1", False, "4", False, "bus", True, 1),
+        ("3", "1", True, None, None, "driving", True, -1), ("4", "2", False, None, None, "biking", False, 1),
+    ]  # fmt: skip
+    assert len(set(values(environment, "lanelet", "road_id"))) == 1
+    assert lanelet(environment, "1", "length_m width_m") == pytest.approx((200.0, 4.0))
+    assert values(environment, "environment", "format handedness handedness_source") == [("argoverse2", "rht", "lanes")]
+    assert {environment.tables[name].num_rows for name in ("speed_limit", "traffic_signal", "stop_line")} == {0}
 
 
 def test_a_bound_is_shared_although_its_points_are_not() -> None:
     """The bound in the middle has other points on each side, and the neighbour's is a hand's breadth off."""
     first = segment(1, points((0, 2), (40, 2.5), (100, 2)), points((0, -2), (100, -2)), left_neighbor_id=2)
     second = segment(2, points((100, 2.2), (0, 2.2)), points((100, 6), (0, 6)), left_neighbor_id=1)
-    found = lanelets(load(road(first, second)))
-    assert [found[name]["left_against"] for name in "12"] == [True, True]
+    assert values(load(road(first, second)), "lanelet", "left_against") == [True, True]
 
 
 def test_one_way_streets_drive_on_the_right_as_argoverse_s_cities_do() -> None:
-    (about,) = rows(load(road(straight(1))), "environment")
-    assert (about["handedness"], about["handedness_source"]) == ("rht", "attribute")
-    assert rows(load(road(straight(1)), handedness="lht"), "environment")[0]["handedness"] == "lht"
+    assert hand(load(road(straight(1)))) == ("rht", "attribute")
+    assert hand(load(road(straight(1)), handedness="lht")) == ("lht", "option")
 
 
 MARKS = {
@@ -83,23 +69,22 @@ MARKS = {
 def test_every_marking(word: str) -> None:
     """The fifteen of av2-api's `LaneMarkType`, which draws the line that is named first on the lane's side of a double one."""
     environment = load(road(straight(1, left_lane_mark_type=word)))
-    left = next(row for row in rows(environment, "lane_boundary") if row["side"] == "left")
-    assert (left["marking"], left["color"]) == MARKS[word]
-    assert (left["s_start_m"], left["s_end_m"]) == (0.0, pytest.approx(200.0))
+    marks = values(environment, "lane_boundary", "marking color s_start_m s_end_m", side="left")
+    assert marks == [(*MARKS[word], 0.0, 200.0)]
     assert checks(environment) == {}
 
 
 def test_words_that_are_not_known_are_named() -> None:
     environment = load(road(straight(1), straight(2, 9.0, lane_type="TRAM", left_lane_mark_type="DOTTED_PINK")))
-    (row,) = (row for row in rows(environment, "map_quality") if row["check_id"] == "unknown_word")
-    assert row["message"].endswith("DOTTED_PINK (1), TRAM (1)")
-    assert (lanelets(environment)["2"]["lane_type"], lanelets(environment)["2"]["drivable"]) == ("none", False)
+    (message,) = messages(environment, "unknown_word")
+    assert message.endswith("DOTTED_PINK (1), TRAM (1)")
+    assert lanelet(environment, "2", "lane_type drivable") == ("none", False)
 
 
 def test_a_map_that_is_cut_says_so() -> None:
     """Of a lane that goes on beyond the map nothing is claimed: it has no link, and no end of its own."""
     environment = load(road(straight(1, successors=[2, 99], left_neighbor_id=98), straight(2, begin=150.0, end=250.0)))
-    assert [(row["from_id"], row["to_id"]) for row in rows(environment, "lane_link")] == [("1", "2")]
+    assert links(environment) == [("1", "2")]
     assert lanelets(environment)["1"]["left_id"] is None
     (row,) = rows(environment, "map_quality")
     assert (row["check_id"], row["severity"], row["n"]) == ("missing_link", "info", 2)
@@ -122,12 +107,12 @@ def crossroads(z: float = 0.0) -> dict[str, Any]:
 
 def test_lanes_inside_an_intersection_are_one_junction() -> None:
     """2 and 4 begin at the same lane, 5 lies across 2; 7 is another junction."""
-    found = {name: row["junction_id"] for name, row in lanelets(load(crossroads())).items()}
-    assert found == {"1": None, "2": "j2", "3": None, "4": "j2", "5": "j2", "7": "j7"}
+    found = values(load(crossroads()), "lanelet", "lanelet_id junction_id")
+    assert dict(found) == {"1": None, "2": "j2", "3": None, "4": "j2", "5": "j2", "7": "j7"}
 
 
 def test_a_bridge_is_no_part_of_the_junction_below() -> None:
-    found = {name: row["junction_id"] for name, row in lanelets(load(crossroads(z=6.0))).items()}
+    found = dict(values(load(crossroads(z=6.0)), "lanelet", "lanelet_id junction_id"))
     assert (found["2"], found["5"]) == ("j2", "j5")
 
 
@@ -148,13 +133,9 @@ def test_crossings_lie_across_lanes(turned: bool) -> None:
     edges = [points((10, 9), (10, -9)), points((14, 9), (14, -9))]
     crossing = {"id": 7, "edge1": edges[0], "edge2": edges[1][::-1] if turned else edges[1]}
     environment = load({**two_ways(), "pedestrian_crossings": {"7": crossing}})
-    found = {row["lanelet_id"]: row for row in rows(environment, "crossing")}
-    assert set(found) == {"1", "2", "3"}  # 4 is for bicycles
-    assert {row["crossing_id"] for row in found.values()} == {"7"}
-    assert (found["1"]["s_start_m"], found["1"]["s_end_m"], found["1"]["kind"]) == (
-        pytest.approx(60.0), pytest.approx(64.0), None,
-    )  # fmt: skip
-    assert found["3"]["s_start_m"] == pytest.approx(136.0)
+    assert sorted(values(environment, "crossing", "crossing_id lanelet_id s_start_m s_end_m kind")) == [
+        ("7", "1", 60.0, 64.0, None), ("7", "2", 60.0, 64.0, None), ("7", "3", 136.0, 140.0, None),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -174,7 +155,7 @@ def test_a_lane_that_cannot_be_read_is_named_and_the_others_stay(change: dict[st
     content["lane_segments"]["2"].update(change)
     environment = load(content)
     assert set(lanelets(environment)) == {"1", "3", "4"}
-    row = next(row for row in rows(environment, "map_quality") if row["check_id"] == "invalid_lane")
+    (row,) = rows(environment, "map_quality", check_id="invalid_lane")
     assert (row["severity"], row["lanelet_id"]) == ("error", "2")
     assert says in row["message"]
 
@@ -183,7 +164,7 @@ def test_a_field_that_is_missing_is_named() -> None:
     content = road(straight(1), straight(2, 9.0))
     del content["lane_segments"]["2"]["is_intersection"]
     content["pedestrian_crossings"] = {"5": {"id": 5, "edge1": points((0, 0), (0, 4))}, "6": {"id": 6, "edge1": []}}
-    found = {row["lanelet_id"]: row["message"] for row in rows(load(content), "map_quality")}
+    found = dict(values(load(content), "map_quality", "lanelet_id message"))
     assert "lane segment 2 is left out: it has no 'is_intersection'" in found["2"]
     assert "crossing 5 is left out: it has no 'edge2'" in found["5"]
     assert "crossing 6 is left out: a line has fewer than two points" in found["6"]
@@ -231,12 +212,7 @@ def test_a_city_s_origin_is_where_it_is_published(city: str) -> None:
 
 
 def test_the_city_is_in_the_name_of_the_file() -> None:
-    def reference(environment: MapTables) -> str | None:
-        found: str | None = rows(environment, "environment")[0]["geo_reference"]
-        return found
-
-    assert reference(load(road(straight(1)), "log_map_archive_x____WDC_city_5.json")) == (
-        "+proj=utm +zone=18 +datum=WGS84 +units=m +no_defs"
-    )
-    assert reference(load(road(straight(1)), "log_map_archive_x.json")) is None
-    assert reference(load(road(straight(1)), "log_map_archive_x____XXX_city_5.json")) is None
+    utm = "+proj=utm +zone=18 +datum=WGS84 +units=m +no_defs"
+    for name, reference in (("x____WDC_city_5", utm), ("x", None), ("x____XXX_city_5", None)):
+        environment = load(road(straight(1)), f"log_map_archive_{name}.json")
+        assert values(environment, "environment", "geo_reference") == [reference]

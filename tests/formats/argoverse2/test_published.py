@@ -6,7 +6,6 @@ import json
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
-import msgspec
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -127,43 +126,6 @@ def test_the_ego_s_speed_is_that_of_its_poses(name: str) -> None:
     now = ego["t_ns"].to_numpy()[1:-1]
     before, after = (np.stack([np.interp(now + d, t, place[:, k]) for k in (0, 1)], axis=1) for d in (-5e7, 5e7))
     assert np.abs((after - before) / 0.1 - columns(ego, "vx_mps", "vy_mps")[1:-1]).max() < 0.25
-
-
-def test_123d_has_the_same_boxes_and_ego() -> None:
-    """The same log as py123d writes it: boxes in the city, the ego as its rear axle, with size and place of the box in the metadata."""
-    folder = shared("perception/d123/av2-sensor_val/adcf7d18-0510-35b0-a2fa-b4cea13a6d76")
-    trace, source = log("adcf7d18")
-    states = trace.tables["actor_state"]
-    ours = dict(
-        zip(
-            keys(states["actor_id"].to_pylist(), states["t_ns"].to_numpy() // 1000),
-            columns(states, "x_m", "y_m", "z_m"),
-            strict=True,
-        )
-    )
-    with pa.ipc.open_file(folder / "box_detections_se3.arrow") as file:
-        table = file.read_all()
-    n = 0
-    parts = ("timestamp_us", "bounding_box_se3", "track_token")
-    frames = zip(*(table[f"box_detections_se3.{part}"].to_pylist() for part in parts), strict=True)
-    for stamp, boxes, names in frames:
-        for box, name in zip(boxes, names, strict=True):
-            assert np.abs(ours[name, stamp] - box[:3]).max() < METRES
-            n += 1
-    assert n == len(ours) - sum(name == "ego" for name, _ in ours)
-    with pa.ipc.open_file(folder / "ego_state_se3.arrow") as file:
-        said = msgspec.msgpack.decode(file.schema.metadata[b"metadata"])
-        egos = file.read_all()
-    assert [actors(trace)["ego"][f"{side}_m"] for side in SIDES] == [said[side] for side in SIDES]
-    assert tuple(said["center_to_imu_se3"][:3]) == REAR_AXLE_TO_CENTRE
-    # its clock is a microsecond behind now and then: the rows are those of the poses
-    poses = feather.read_table(source / "city_SE3_egovehicle.feather")["timestamp_ns"].to_numpy() // 1000
-    imu = dict(zip(poses.tolist(), egos["ego_state_se3.imu_se3"].to_pylist(), strict=True))
-    for (name, stamp), place in ours.items():
-        if name == "ego":
-            x, y, z, w, *axis = imu[stamp]
-            centre = rotation([*axis, w]).apply(REAR_AXLE_TO_CENTRE) + np.array([x, y, z])
-            assert np.abs(place - centre).max() < METRES
 
 
 def raw_map(relative: str) -> tuple[dict[str, Any], dict[str, list[dict[str, Any]]], dict[str, Any]]:

@@ -10,6 +10,7 @@ from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source
 from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.commonroad.scenario_text import bound, lanelet, scenario
+from tests.formats.maps import checks, hand, links, values
 from tests.shared_data import shared
 
 
@@ -24,9 +25,7 @@ def test_lanelets_and_what_lies_on_them() -> None:
                     "<stopLine><point><x>45</x><y>1.75</y></point><point><x>45</x><y>-1.75</y></point></stopLine>"),
             lanelet(2, 0.0, "<laneletType>interstate</laneletType>", x=50.0),
             lanelet(3, -3.5, '<laneletType>sidewalk</laneletType><adjacentLeft ref="1" drivingDir="same"/>'),
-            '<lanelet id="4">'
-            + bound("leftBound", [(20.0, 5.0), (20.0, -5.0)])
-            + bound("rightBound", [(17.0, 5.0), (17.0, -5.0)])
+            '<lanelet id="4">' + bound("leftBound", [(20.0, 5.0), (20.0, -5.0)]) + bound("rightBound", [(17.0, 5.0), (17.0, -5.0)])
             + "<laneletType>crosswalk</laneletType></lanelet>",
             '<trafficSign id="90"><trafficSignElement><trafficSignID>274</trafficSignID>'
             "<additionalValue>13.9</additionalValue></trafficSignElement>"
@@ -35,26 +34,20 @@ def test_lanelets_and_what_lies_on_them() -> None:
         ),
         offset=(100.0, 0.0),
     )  # fmt: skip
-    rows = {table: content.to_pylist() for table, content in environment.tables.items()}
-    lanes = {row["lanelet_id"]: row for row in rows["lanelet"]}
-    assert set(lanes) == {"1", "2", "3"}
-    assert (lanes["1"]["road_type"], lanes["1"]["drivable"], lanes["1"]["junction_id"]) == ("rural", True, None)
-    assert (lanes["2"]["road_type"], lanes["2"]["junction_id"]) == ("motorway", "80")
-    assert (lanes["3"]["lane_type"], lanes["3"]["drivable"]) == ("sidewalk", False)
-    assert [(r["from_id"], r["to_id"]) for r in rows["lane_link"]] == [("1", "2")]
-    assert [(r["side"], r["marking"]) for r in rows["lane_boundary"] if r["lanelet_id"] == "1"] == [
-        ("left", "broken"),
-        ("right", "solid"),
-    ]
-    assert [(r["lanelet_id"], r["limit_mps"], r["source"]) for r in rows["speed_limit"]] == [("1", 13.9, "sign")]
-    assert [(r["stop_line_id"], r["lane_s_m"]) for r in rows["stop_line"]] == [("1.stop", pytest.approx(45.0))]
-    assert [(r["crossing_id"], r["lanelet_id"], r["s_start_m"], r["s_end_m"]) for r in rows["crossing"]] == [
-        ("4", "1", pytest.approx(17.0), pytest.approx(20.0))
-    ]
-    assert [(r["signal_id"], r["kind"], r["lane_s_m"]) for r in rows["traffic_signal"]] == [
-        ("90", "speed_limit", pytest.approx(10.0))
-    ]
-    assert rows["lane_point"][0]["x_m"] == 100.0
+    assert values(environment, "lanelet", "lanelet_id lane_type drivable road_type junction_id") == [
+        ("1", "driving", True, "rural", None), ("2", "driving", True, "motorway", "80"), ("3", "sidewalk", False, None, None),
+    ]  # fmt: skip
+    assert links(environment) == [("1", "2")]
+    marks = values(environment, "lane_boundary", "side marking", lanelet_id="1")
+    assert marks == [("left", "broken"), ("right", "solid")]
+    for table, columns, row in (
+        ("speed_limit", "lanelet_id limit_mps source", ("1", 13.9, "sign")),
+        ("stop_line", "stop_line_id lane_s_m", ("1.stop", 45.0)),
+        ("crossing", "crossing_id lanelet_id s_start_m s_end_m", ("4", "1", 17.0, 20.0)),
+        ("traffic_signal", "signal_id kind lane_s_m", ("90", "speed_limit", 10.0)),
+    ):
+        assert values(environment, table, columns) == [row]
+    assert values(environment, "lane_point", "x_m")[0] == 100.0
 
 
 @pytest.mark.parametrize(
@@ -67,55 +60,49 @@ def test_lanelets_and_what_lies_on_them() -> None:
     ],
 )
 def test_turns_that_a_light_holds_for(direction: str, turns: list[str] | None) -> None:
-    environment = load(
-        scenario(lanelet(1, 0.0, '<trafficLightRef ref="90"/>'), f'<trafficLight id="90">{direction}</trafficLight>')
-    )
-    (row,) = environment.tables["traffic_signal"].to_pylist()
-    assert (row["kind"], row["turns"]) == ("traffic_light", turns)
+    light = f'<trafficLight id="90">{direction}</trafficLight>'
+    environment = load(scenario(lanelet(1, 0.0, '<trafficLightRef ref="90"/>'), light))
+    assert values(environment, "traffic_signal", "kind turns") == [("traffic_light", turns)]
+
+
+ONE = [lanelet(1, 0.0)]
+OPPOSITE = [lanelet(1, 0.0, '<adjacentRight ref="2" drivingDir="opposite"/>'), lanelet(2, -3.5)]
 
 
 @pytest.mark.parametrize(
     ("parts", "benchmark", "options", "expected"),
     [
-        ([lanelet(1, 0.0)], "ZAM_Test-1", {}, ("rht", "default")),
-        ([lanelet(1, 0.0)], "DEU_Test-1", {}, ("rht", "attribute")),
-        ([lanelet(1, 0.0)], "C-GBR_Test-1", {}, ("lht", "attribute")),
-        ([lanelet(1, 0.0)], "ZAM_Test-1", {"handedness": "lht"}, ("lht", "option")),
-        (
-            [lanelet(1, 0.0, '<adjacentRight ref="2" drivingDir="opposite"/>'), lanelet(2, -3.5)],
-            "ZAM_T-1",
-            {},
-            ("lht", "lanes"),
-        ),
+        (ONE, "ZAM_Test-1", {}, ("rht", "default")),
+        (ONE, "DEU_Test-1", {}, ("rht", "attribute")),
+        (ONE, "C-GBR_Test-1", {}, ("lht", "attribute")),
+        (ONE, "ZAM_Test-1", {"handedness": "lht"}, ("lht", "option")),
+        (OPPOSITE, "ZAM_T-1", {}, ("lht", "lanes")),
         # whoever drives along one-way lanes agrees with them on either side of the road
-        ([lanelet(1, 0.0)], "ZAM_Test-1", {"voted_handedness": "lht"}, ("rht", "default")),
+        (ONE, "ZAM_Test-1", {"voted_handedness": "lht"}, ("rht", "default")),
     ],
 )
 def test_the_side_driven_on(
     parts: list[str], benchmark: str, options: dict[str, str], expected: tuple[str, str]
 ) -> None:
     environment = load(scenario(*parts, benchmark=benchmark), **options)
-    assert (environment.handedness, environment.handedness_source) == expected
+    assert hand(environment) == expected
     assert environment.environment_id.endswith("?") == (expected[1] == "default")
 
 
 def test_witnesses_that_disagree_are_reported() -> None:
-    environment = load(
-        scenario(lanelet(1, 0.0, '<adjacentLeft ref="2" drivingDir="opposite"/>'), lanelet(2, 3.5), benchmark="GBR_T-1")
-    )
+    beside = lanelet(1, 0.0, '<adjacentLeft ref="2" drivingDir="opposite"/>')
+    environment = load(scenario(beside, lanelet(2, 3.5), benchmark="GBR_T-1"))
     assert environment.handedness == "rht"
-    assert [row["check_id"] for row in environment.tables["map_quality"].to_pylist()] == ["handedness_disagrees"]
+    assert list(checks(environment)) == ["handedness_disagrees"]
+
+
+def errors(environment: MapTables) -> list[tuple[str, str]]:
+    return values(environment, "map_quality", "check_id lanelet_id", severity="error")
 
 
 def test_a_lanelet_that_cannot_be_read_is_named() -> None:
-    environment = load(
-        scenario(lanelet(1, 0.0), '<lanelet id="9"><leftBound><point><x>a</x><y>1</y></point></leftBound></lanelet>')
-    )
-    assert [
-        (r["check_id"], r["lanelet_id"])
-        for r in environment.tables["map_quality"].to_pylist()
-        if r["severity"] == "error"
-    ] == [("invalid_lane", "9")]
+    broken = '<lanelet id="9"><leftBound><point><x>a</x><y>1</y></point></leftBound></lanelet>'
+    assert errors(load(scenario(lanelet(1, 0.0), broken))) == [("invalid_lane", "9")]
 
 
 @pytest.mark.parametrize("x", ["nan", "1e300", "1 2"])
@@ -133,8 +120,7 @@ def test_a_sign_or_stop_line_at_no_place_is_refused_with_its_line(tag: str, x: s
 
 def test_a_crossing_without_a_shape_is_named() -> None:
     walk = '<lanelet id="9"><leftBound/><rightBound/><laneletType>crosswalk</laneletType></lanelet>'
-    found = load(scenario(lanelet(1, 0.0), walk)).tables["map_quality"].to_pylist()
-    assert [(r["check_id"], r["lanelet_id"]) for r in found if r["severity"] == "error"] == [("invalid_lane", "9")]
+    assert errors(load(scenario(lanelet(1, 0.0), walk))) == [("invalid_lane", "9")]
 
 
 @pytest.mark.parametrize(
@@ -156,12 +142,14 @@ def test_what_cannot_be_a_map_is_refused(text: str) -> None:
 )
 def test_real_maps(name: str, lanelets: int, drivable: int, found: tuple[str, str]) -> None:
     environment = load_map(read_source(shared(name)))
-    rows = environment.tables["lanelet"].to_pylist()
-    assert (len(rows), sum(row["drivable"] for row in rows)) == (lanelets, drivable)
-    assert (environment.handedness, environment.handedness_source) == found
-    doubts = {row["check_id"] for row in environment.tables["map_quality"].to_pylist() if row["severity"] != "info"}
+    widths = values(environment, "lanelet", "width_m", drivable=True)
+    assert (environment.tables["lanelet"].num_rows, len(widths)) == (lanelets, drivable)
+    assert hand(environment) == found
+    doubts = {
+        check for check, severity in values(environment, "map_quality", "check_id severity") if severity != "info"
+    }
     assert doubts == ({"road_type_contradicted"} if "US101" in name else set())
-    assert all(1.9 < row["width_m"] < 6.0 for row in rows if row["drivable"])
+    assert all(1.9 < width < 6.0 for width in widths)
 
 
 def sign(name: int, *elements: tuple[str, str], more: str = "") -> str:
@@ -174,13 +162,15 @@ def sign(name: int, *elements: tuple[str, str], more: str = "") -> str:
 
 
 def limits(environment: MapTables) -> dict[str, tuple[float | None, str]]:
-    rows = environment.tables["speed_limit"].to_pylist()
-    return {row["lanelet_id"]: (row["limit_mps"], row["source"]) for row in rows}
+    return {
+        name: (limit, source)
+        for name, limit, source in values(environment, "speed_limit", "lanelet_id limit_mps source")
+    }
 
 
 def said(environment: MapTables) -> list[tuple[str, str]]:
-    rows = environment.tables["map_quality"].to_pylist()
-    return [(row["check_id"], row["message"]) for row in rows if row["check_id"] != "handedness_default"]
+    rows = values(environment, "map_quality", "check_id message")
+    return [row for row in rows if row[0] != "handedness_default"]
 
 
 @pytest.mark.parametrize(
@@ -193,8 +183,8 @@ def said(environment: MapTables) -> list[tuple[str, str]]:
         ("DEU", "274", "speed_limit"),
         ("ZAM", "274.1", "speed_zone"),
         *(
-            (country, "274", "speed_limit")
-            for country in ("HRV", "CHN", "RUS", "ARG", "BEL", "FRA", "GRC", "ITA", "PRI", "USA")
+            (name, "274", "speed_limit")
+            for name in ("HRV", "CHN", "RUS", "ARG", "BEL", "FRA", "GRC", "ITA", "PRI", "USA")
         ),
         ("USA", "R1-1", "stop"),
         ("USA", "R5-1a", "no_entry"),
@@ -206,13 +196,9 @@ def said(environment: MapTables) -> list[tuple[str, str]]:
     ],
 )
 def test_codes_of_signs_are_those_of_the_country(country: str, code: str, kind: str | None) -> None:
-    environment = load(
-        scenario(
-            lanelet(1, 0.0, '<trafficSignRef ref="90"/>'), sign(90, (code, "13.9")), benchmark=f"{country}_Test-1_1_T-1"
-        )
-    )
-    (row,) = environment.tables["traffic_signal"].to_pylist()
-    assert row["kind"] == kind
+    parts = lanelet(1, 0.0, '<trafficSignRef ref="90"/>'), sign(90, (code, "13.9"))
+    environment = load(scenario(*parts, benchmark=f"{country}_Test-1_1_T-1"))
+    assert values(environment, "traffic_signal", "kind") == [kind]
     assert limits(environment) == ({"1": (13.9, "sign")} if kind in {"speed_limit", "speed_zone"} else {})
     assert [check for check, _ in said(environment)] == ([] if kind else ["unknown_sign"])
 
@@ -232,23 +218,17 @@ def test_the_least_limit_of_a_lanelet_and_that_of_older_files() -> None:
 
 
 def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
-    environment = load(
-        scenario(
-            lanelet(1, 0.0, '<trafficSignRef ref="90"/>'),
-            lanelet(2, 10.0, '<trafficSignRef ref="91"/>'),
-            lanelet(3, 20.0, '<trafficSignRef ref="92"/>'),
-            lanelet(4, 30.0, '<trafficSignRef ref="92"/><trafficSignRef ref="94"/>'),
-            lanelet(5, 40.0, '<trafficSignRef ref="92"/><trafficSignRef ref="93"/>'),
-            lanelet(6, 50.0, '<trafficSignRef ref="95"/>'),
-            lanelet(7, 60.0, "<speedLimit>-1</speedLimit>"),
-            sign(90, ("274", "50")),
-            sign(91, ("274", "")),
-            sign(92, ("274", "12"), ("1053-35", "")),
-            sign(93, ("274", "10")),
-            sign(94, ("274", "20")),
-            sign(95, ("274", "9"), ("1012-50", "")),
-        )
-    )
+    refers = ("90",), ("91",), ("92",), ("92", "94"), ("92", "93"), ("95",)
+    lanes = [
+        lanelet(k + 1, 10.0 * k, "".join(f'<trafficSignRef ref="{name}"/>' for name in names))
+        for k, names in enumerate(refers)
+    ]
+    signs = {
+        90: [("274", "50")], 91: [("274", "")], 92: [("274", "12"), ("1053-35", "")], 93: [("274", "10")], 94: [("274", "20")],
+        95: [("274", "9"), ("1012-50", "")],
+    }  # fmt: skip
+    slow = lanelet(7, 60.0, "<speedLimit>-1</speedLimit>")
+    environment = load(scenario(*lanes, slow, *(sign(name, *elements) for name, elements in signs.items())))
     assert limits(environment) == {"5": (10.0, "sign"), "6": (9.0, "sign")}
     found = said(environment)
     assert [message for check, message in found if check == "invalid_speed"] == [
@@ -291,15 +271,10 @@ def test_a_light_and_a_stop_sign_hold_at_the_stop_line() -> None:
             sign(93, ("276", "")),
         )
     )
-    rows = environment.tables["traffic_signal"].to_pylist()
-    assert {(row["signal_id"], row["lanelet_id"]): row["lane_s_m"] for row in rows} == {
-        ("90", "1"): pytest.approx(45.0),
-        ("90", "2"): pytest.approx(45.0, abs=0.5),
-        ("91", "3"): pytest.approx(50.0),
-        ("92", "1"): pytest.approx(45.0),
-        ("92", "3"): pytest.approx(50.0),
-        ("93", "3"): 0.0,
-    }
+    assert sorted(values(environment, "traffic_signal", "signal_id lanelet_id lane_s_m")) == [
+        ("90", "1", 45.0), ("90", "2", pytest.approx(45.0, abs=0.5)), ("91", "3", 50.0), ("92", "1", 45.0), ("92", "3", 50.0),
+        ("93", "3", 0.0),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -322,4 +297,4 @@ def test_urban_lanelets_of_a_scenario_that_is_tagged_as_of_a_highway_are_of_no_k
     """US101 is a freeway: every lanelet of the file is `urban`, its tags say highway. Peach's tags say urban."""
     for name, types in (("USA_US101-4_1_T-1", {None}), ("USA_Peach-4_8_T-1", {"town"})):
         environment = load_map(read_source(shared(f"commonroad/{name}.xml")))
-        assert {row["road_type"] for row in environment.tables["lanelet"].to_pylist()} == types
+        assert set(values(environment, "lanelet", "road_type")) == types

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -11,7 +10,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import load_map, read_source
-from drivelint.road.map_reader import MapSource, MapTables
+from drivelint.road.map_reader import MapSource
 from tests.formats.d123.files import (
     LAYERS,
     Object,
@@ -25,24 +24,14 @@ from tests.formats.d123.files import (
     straight,
     write_map,
 )
-
-
-def lanelets(environment: MapTables) -> dict[str, dict[str, Any]]:
-    return {row["lanelet_id"]: row for row in environment.tables["lanelet"].to_pylist()}
-
-
-def problems(environment: MapTables, check: str) -> list[str]:
-    return [row["message"] for row in environment.tables["map_quality"].to_pylist() if row["check_id"] == check]
+from tests.formats.maps import checks, hand, lanelets, links, messages, rows, values
 
 
 def test_a_lane_lies_between_its_bounds(tmp_path: Path) -> None:
     """It rises from 3 m to 5 m and grows wider; its middle is resampled, its bounds are as they were."""
-    environment = load(
-        tmp_path,
-        [lane(4, [(0, 2, 3), (40, 2, 5)], [(0, -2, 3), (20, -2, 4), (40, -4, 5)])],
-        options={"offset": (100, 0)},
-    )
-    points = environment.tables["lane_point"].to_pylist()
+    widening = lane(4, [(0, 2, 3), (40, 2, 5)], [(0, -2, 3), (20, -2, 4), (40, -4, 5)])
+    environment = load(tmp_path, [widening], options={"offset": (100, 0)})
+    points = rows(environment, "lane_point")
     assert (points[0]["x_m"], points[-1]["x_m"]) == (100.0, 140.0)
     for p in points:
         x = p["left_x_m"] - 100
@@ -50,8 +39,7 @@ def test_a_lane_lies_between_its_bounds(tmp_path: Path) -> None:
         assert p["right_y_m"] == pytest.approx(np.interp(p["right_x_m"] - 100, [0, 20, 40], [-2, -2, -4]), abs=1e-6)
         assert p["z_m"] == pytest.approx(3.0 + x * 0.05, abs=0.06)
     assert {p["half_width_m"] for p in points[:3]} == {2.0}
-    about = environment.tables["environment"].to_pylist()[0]
-    assert (about["format"], about["geo_reference"], about["signs_mapped"]) == ("123d", None, False)
+    assert values(environment, "environment", "format geo_reference signs_mapped") == [("123d", None, False)]
 
 
 def test_a_map_without_heights(tmp_path: Path) -> None:
@@ -62,16 +50,12 @@ def test_a_map_without_heights(tmp_path: Path) -> None:
 def test_kinds_of_lanes(tmp_path: Path) -> None:
     lanes = [straight(kind, 0, 50, 4.0 * kind, kind=kind) for kind in range(6)]
     environment = load(tmp_path, lanes)
-    found = {
-        int(name): (row["lane_type"], row["drivable"], row["road_type"]) for name, row in lanelets(environment).items()
-    }
-    assert found == {
-        0: ("driving", True, None), 1: ("driving", True, "motorway"), 2: ("driving", True, None), 3: ("biking", False, None),
-        4: ("bus", True, None), 5: ("driving", True, None),
-    }  # fmt: skip
-    assert problems(environment, "unknown_word") == [
-        "type 5 of lanelet 5 is not known: it is treated as a lane for vehicles"
-    ]
+    assert sorted(values(environment, "lanelet", "lanelet_id lane_type drivable road_type")) == [
+        ("0", "driving", True, None), ("1", "driving", True, "motorway"), ("2", "driving", True, None), ("3", "biking", False, None),
+        ("4", "bus", True, None), ("5", "driving", True, None),
+    ]  # fmt: skip
+    message = "type 5 of lanelet 5 is not known: it is treated as a lane for vehicles"
+    assert messages(environment, "unknown_word") == [message]
 
 
 def test_neighbours_and_which_way_they_are_driven(tmp_path: Path) -> None:
@@ -82,12 +66,10 @@ def test_neighbours_and_which_way_they_are_driven(tmp_path: Path) -> None:
         straight(2, 0, 50, -3.5, left_lane_id=0),
     ]
     environment = load(tmp_path, lanes)
-    names = ("left_id", "left_against", "right_id", "right_against", "road_id")
-    found = {name: tuple(row[column] for column in names) for name, row in lanelets(environment).items()}
-    assert found == {
-        "0": ("1", True, "2", False, "r0"), "1": ("0", True, None, None, "r0"), "2": ("0", False, None, None, "r0"),
-    }  # fmt: skip
-    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
+    assert sorted(values(environment, "lanelet", "lanelet_id left_id left_against right_id right_against road_id")) == [
+        ("0", "1", True, "2", False, "r0"), ("1", "0", True, None, None, "r0"), ("2", "0", False, None, None, "r0"),
+    ]  # fmt: skip
+    assert hand(environment) == ("rht", "lanes")
 
 
 def test_ways_on(tmp_path: Path) -> None:
@@ -98,19 +80,17 @@ def test_ways_on(tmp_path: Path) -> None:
         straight(3, 90, 120, 0.0, predecessor_ids=[2]),
     ]
     environment = load(tmp_path, lanes)
-    links = {(row["from_id"], row["to_id"]) for row in environment.tables["lane_link"].to_pylist()}
-    assert links == {("1", "2"), ("2", "3")}
-    assert problems(environment, "missing_link") == ["lanelet 1 leads to 9, which the map does not contain"]
+    assert set(links(environment)) == {("1", "2"), ("2", "3")}
+    assert messages(environment, "missing_link") == ["lanelet 1 leads to 9, which the map does not contain"]
 
 
 def test_limits(tmp_path: Path) -> None:
     given = {1: 13.4, 2: None, 3: float("nan"), 4: 0.0, 5: 88.0}
     environment = load(tmp_path, [straight(k, 0, 50, 4.0 * k, speed_limit_mps=v) for k, v in given.items()])
-    rows = {
-        row["lanelet_id"]: (row["limit_mps"], row["source"]) for row in environment.tables["speed_limit"].to_pylist()
-    }
-    assert rows == {"1": (13.4, "lane"), "4": (None, "unread"), "5": (None, "unread")}
-    assert len(problems(environment, "invalid_speed")) == 2
+    assert sorted(values(environment, "speed_limit", "lanelet_id limit_mps source")) == [
+        ("1", 13.4, "lane"), ("4", None, "unread"), ("5", None, "unread"),
+    ]  # fmt: skip
+    assert len(messages(environment, "invalid_speed")) == 2
 
 
 def test_junctions_are_those_of_the_map(tmp_path: Path) -> None:
@@ -120,11 +100,8 @@ def test_junctions_are_those_of_the_map(tmp_path: Path) -> None:
         straight(3, 50, 80, 3.5, lane_group_id=12), group(10, [1], None), group(11, [2], 5), group(12, [3], None),
         intersection(5, [11]), intersection(6, [12]),
     ]  # fmt: skip
-    assert {n: row["junction_id"] for n, row in lanelets(load(tmp_path, objects)).items()} == {
-        "1": None,
-        "2": "5",
-        "3": "6",
-    }
+    found = values(load(tmp_path, objects), "lanelet", "lanelet_id junction_id")
+    assert dict(found) == {"1": None, "2": "5", "3": "6"}
 
 
 @pytest.mark.parametrize(("height", "junction"), [(0.0, "j1"), (6.0, None)])
@@ -143,10 +120,9 @@ def test_crossings(tmp_path: Path, height: float) -> None:
     environment = load(
         tmp_path, [straight(1, 0, 50, 0.0), crosswalk(7, 20, -4, 24, 4, z=height), crosswalk(8, 20, 50, 24, 60)]
     )
-    rows = environment.tables["crossing"].to_pylist()
-    found = [(r["crossing_id"], r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["kind"]) for r in rows]
+    found = values(environment, "crossing", "crossing_id lanelet_id s_start_m s_end_m kind")
     assert found == ([("7", "1", 20.0, 24.0, None)] if height == 0.0 else [])
-    assert problems(environment, "object_without_lane") == ["crossing 8 lies across no lane that vehicles drive on"]
+    assert messages(environment, "object_without_lane") == ["crossing 8 lies across no lane that vehicles drive on"]
 
 
 @pytest.mark.parametrize(
@@ -162,32 +138,28 @@ def test_crossings(tmp_path: Path, height: float) -> None:
 )
 def test_the_side_by_the_place(tmp_path: Path, dataset: str, location: str, side: str, source: str) -> None:
     environment = load(tmp_path, [straight(1, 0, 50, 0.0)], dataset=dataset, location=location)
-    assert (environment.handedness, environment.handedness_source) == (side, source)
+    assert hand(environment) == (side, source)
     given = load(tmp_path, [straight(1, 0, 50, 0.0)], dataset=dataset, location=location, options={"handedness": "lht"})
-    assert (given.handedness, given.handedness_source) == ("lht", "option")
+    assert hand(given) == ("lht", "option")
 
 
 def test_lanes_that_disagree_with_the_place(tmp_path: Path) -> None:
     lanes = [straight(1, 0, 50, 0.0, left_lane_id=2), straight(2, 0, 50, 3.5, back=True, left_lane_id=1)]
     environment = load(tmp_path, lanes, dataset="nuscenes", location="singapore-onenorth")
     assert environment.handedness == "lht"
-    assert len(problems(environment, "handedness_disagrees")) == 1
+    assert len(messages(environment, "handedness_disagrees")) == 1
 
 
 def test_what_is_not_read_is_said(tmp_path: Path) -> None:
     shape = crosswalk(1, 0, 0, 1, 1).shape
-    more = [
-        Object(LAYERS["walkway"], 1, {}, shape),
-        Object(LAYERS["stop_zone"], 2, {}, shape),
-        Object(55, 3, {}, shape),
-    ]
+    layers = LAYERS["walkway"], LAYERS["stop_zone"], 55
+    more = [Object(layer, number, {}, shape) for number, layer in enumerate(layers, 1)]
     environment = load(tmp_path, [straight(1, 0, 50, 0.0), *more], dataset="nuscenes", location="boston-seaport")
-    assert problems(environment, "layers_unread") == [
-        "objects of layers that are not read: 1 of walkway, 1 of stop zone"
-    ]
-    assert problems(environment, "unknown_word") == ["layers that 123D does not define: 55: their objects are not read"]
-    assert "of lanes through intersections" in problems(environment, "estimated_bounds")[0]
-    assert len(problems(environment, "signs_unmapped")) == 1
+    unread = "objects of layers that are not read: 1 of walkway, 1 of stop zone"
+    assert messages(environment, "layers_unread") == [unread]
+    assert messages(environment, "unknown_word") == ["layers that 123D does not define: 55: their objects are not read"]
+    assert "of lanes through intersections" in messages(environment, "estimated_bounds")[0]
+    assert len(messages(environment, "signs_unmapped")) == 1
 
 
 def test_a_lane_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
@@ -205,9 +177,8 @@ def test_a_lane_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     ]  # fmt: skip
     environment = load(tmp_path, [good, *broken, straight(1, 0, 60, 9.0)])
     assert {name: row["length_m"] for name, row in lanelets(environment).items()} == {"1": 50.0}
-    rows = environment.tables["map_quality"].to_pylist()
-    assert {row["lanelet_id"] for row in rows if row["check_id"] == "invalid_lane"} == set("12345678")
-    assert "lanelet 1 is left out: another has the same number" in problems(environment, "invalid_lane")
+    assert set(checks(environment)["invalid_lane"]) == set("12345678")
+    assert "lanelet 1 is left out: another has the same number" in messages(environment, "invalid_lane")
 
 
 def test_what_is_no_map_of_123d_is_refused(tmp_path: Path) -> None:
@@ -218,10 +189,7 @@ def test_what_is_no_map_of_123d_is_refused(tmp_path: Path) -> None:
     other = read_source(arrow(tmp_path / "other.arrow", {"a": pa.array([1])}, {}))
     with pytest.raises(MapError, match="no column object_id, map_layer, features, wkb: this is not a map of 123D"):
         load_map(other)
-    nameless = {
-        name: pa.array([None], kind)
-        for name, kind in zip(("object_id", "map_layer"), (pa.int64(), pa.int8()), strict=True)
-    }
+    nameless = {"object_id": pa.array([None], pa.int64()), "map_layer": pa.array([None], pa.int8())}
     blank = {name: pa.array([b""]) for name in ("features", "wkb")}
     with pytest.raises(MapError, match="an object has no number or no layer"):
         load_map(read_source(arrow(tmp_path / "null.arrow", {**nameless, **blank}, {"version": "0.7.0"})))

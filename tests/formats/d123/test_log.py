@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pytest
@@ -25,7 +26,7 @@ from tests.formats.d123.files import (
     times,
     write_log,
 )
-from tests.formats.logs import actors, log, quality, read, states
+from tests.formats.logs import actors, classes, egos, log, quality, read, size, states
 
 REGISTRY = "py123d.parser.registry."
 
@@ -45,13 +46,11 @@ def test_a_log_is_read(tmp_path: Path) -> None:
     about = log(trace)
     assert (about["format"], about["t_start_ns"], about["utc_start_ns"]) == ("123d", 1_000_000_000, None)
     assert about["sensor_range_m"] is None
-    assert set(actors(trace)) == {"ego", "a", "p"}
+    assert (set(actors(trace)), egos(trace)) == ({"ego", "a", "p"}, ["ego"])
     assert len(states(trace)) == 36
     first = states(trace, "a")[0]
     assert (first["t_ns"], first["x_m"], first["y_m"], first["vx_mps"]) == (1_000_000_000, 20.0, 3.0, 10.0)
-    assert actors(trace)["a"] | {"drive_id": ""} == {
-        "drive_id": "", "actor_id": "a", "actor_class": "car", "length_m": 4.5, "width_m": 1.8, "height_m": 1.5, "is_ego": False,
-    }  # fmt: skip
+    assert (classes(trace)["a"], size(trace, "a")) == ("car", (4.5, 1.8, 1.5))
     assert any("data set test-set, PIT; written by py123d 0.7.0" in note for note in trace.notes)
 
 
@@ -135,8 +134,8 @@ def test_a_label_that_is_not_known_is_no_class(tmp_path: Path, labels: str, numb
 
 def test_an_ego_whose_id_a_box_has(tmp_path: Path) -> None:
     frames = [Frame(t, [Box("ego", 30, 9)]) for t in times(3)]
-    found = actors(read(write_log(tmp_path / "log", frames, driven(3))))
-    assert {name: row["is_ego"] for name, row in found.items()} == {"ego": False, "ego_vehicle": True}
+    trace = read(write_log(tmp_path / "log", frames, driven(3)))
+    assert (set(actors(trace)), egos(trace)) == ({"ego", "ego_vehicle"}, ["ego_vehicle"])
 
 
 def test_frames_without_anybody_are_steps_and_those_without_boxes_are_none(tmp_path: Path) -> None:
@@ -259,9 +258,8 @@ def test_a_folder_without_the_table_of_frames_is_no_log(tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", ["0.1.0", "0.8.0", "1.0.0", "unknown", None])
 def test_a_version_that_is_not_known_is_refused(tmp_path: Path, version: str | None) -> None:
     folder = plain(tmp_path / "log", version=version)
-    with pytest.raises(
-        TraceError, match=rf"py123d {version} wrote the file, but only the versions 0\.2 to 0\.7 are supported"
-    ):
+    said = rf"py123d {version} wrote the file, but only the versions 0\.2 to 0\.7 are supported"
+    with pytest.raises(TraceError, match=said):
         read(folder)
 
 
@@ -278,25 +276,24 @@ def test_a_cut_file_is_refused(tmp_path: Path, name: str) -> None:
         read(file.parent)
 
 
-def test_what_is_no_log_of_123d_is_refused(tmp_path: Path) -> None:
+def of_texts() -> dict[str, pa.Array]:
+    return ego_columns(driven(12)) | {"ego_state_se3.imu_se3": pa.array(["x"] * 12)}
+
+
+@pytest.mark.parametrize(
+    ("columns", "metadata", "message"),
+    [
+        ({"ego_state_se3.timestamp_us": pa.array([1])}, EGO_METADATA, r"no column ego_state_se3\.imu_se3"),
+        (ego_columns(driven(12)), None, "its schema has no 'metadata'"),
+        (ego_columns(driven(12)), {**EGO_METADATA, "center_to_imu_se3": [1.0, 2.0]}, "no pose 'center_to_imu_se3'"),
+        (ego_columns([]), EGO_METADATA, "no state of the ego"),
+        (of_texts(), EGO_METADATA, "is string, not fixed_size_list"),
+    ],
+)
+def test_what_is_no_log_of_123d_is_refused(tmp_path: Path, columns: Any, metadata: Any, message: str) -> None:
     folder = plain(tmp_path / "log")
-    ego = folder / "ego_state_se3.arrow"
-    arrow(ego, {"ego_state_se3.timestamp_us": pa.array([1])}, EGO_METADATA)
-    with pytest.raises(TraceError, match=r"no column ego_state_se3\.imu_se3"):
-        read(folder)
-    arrow(ego, ego_columns(driven(12)), None)
-    with pytest.raises(TraceError, match="its schema has no 'metadata'"):
-        read(folder)
-    arrow(ego, ego_columns(driven(12)), {**EGO_METADATA, "center_to_imu_se3": [1.0, 2.0]})
-    with pytest.raises(TraceError, match="no pose 'center_to_imu_se3'"):
-        read(folder)
-    arrow(ego, ego_columns([]), EGO_METADATA)
-    with pytest.raises(TraceError, match="no state of the ego"):
-        read(folder)
-    columns = ego_columns(driven(12))
-    columns["ego_state_se3.imu_se3"] = pa.array(["x"] * 12)
-    arrow(ego, columns, EGO_METADATA)
-    with pytest.raises(TraceError, match="is string, not fixed_size_list"):
+    arrow(folder / "ego_state_se3.arrow", columns, metadata)
+    with pytest.raises(TraceError, match=message):
         read(folder)
 
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from mcap.writer import CompressionType
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import Container, DamageError
 from tests.formats.logs import log, read
 from tests.formats.mcap.damage import (
     CHUNK,
@@ -272,12 +271,6 @@ def test_log_times_that_go_back_bound_nothing(tmp_path: Path) -> None:
     ((at, _),) = places(data, DATA_END)
     (found,) = findings(read(put(path, replaced(data, begin + 9 + 24, b"\1\2\3\4")[: at + 13])))["lost_time"]
     assert (found["t_first_ns"], found["t_last_ns"]) == (None, None)
-
-
-def test_damage_is_an_error_for_who_does_not_ask_for_salvage(whole: Path) -> None:
-    data = whole.read_bytes()
-    with pytest.raises(DamageError, match=r"at byte \d+"):
-        list(Container(put(whole, data[: len(data) // 2])).messages())
 
 
 def test_a_file_of_false_chunk_heads_ends(whole: Path) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.formats.opendrive.xodr import checks, geometry, lane, lanelets, load, points, road, rows, section
-
-WIDTH = '<width sOffset="0" a="3.5"/>'
+from tests.formats.maps import checks, hand, lanelets, messages, points
+from tests.formats.opendrive.signal_text import WIDTH
+from tests.formats.opendrive.xodr import geometry, lane, load, road, section
 
 
 def travelling(number: int, way: str) -> str:
@@ -27,50 +27,33 @@ CONNECTING = road("10", junction="9")
 
 def test_the_option_comes_first() -> None:
     environment = load(road(attributes='rule="RHT"'), handedness="lht", voted_handedness="rht")
-    assert (environment.handedness, environment.handedness_source) == ("lht", "option")
+    assert hand(environment) == ("lht", "option")
     assert "handedness_disagrees" in checks(environment)
     assert lanelets(environment)["1.0.1"]["along_road"] == 1
 
 
 @pytest.mark.parametrize(
-    ("attributes", "options", "told"),
+    ("options", "told", "remedy"),
     [
-        (
-            'rule="RHT"',
-            {"handedness": "lht", "voted_handedness": "rht"},
-            (
-                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is used. "
-                "If this is not right, every direction is wrong: leave the option out, or set rht."
-            ),
-        ),
-        (
-            'rule="RHT"',
-            {"handedness": "rht", "voted_handedness": "lht"},
-            (
-                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
-                "If this is not right, every direction is wrong: give --handedness lht."
-            ),
-        ),
-        (
-            'rule="RHT"',
-            {"voted_handedness": "lht"},
-            (
-                "the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
-                "If this is not right, every direction is wrong: give --handedness lht."
-            ),
-        ),
+        ({"handedness": "lht", "voted_handedness": "rht"}, ("--handedness says lht, ", "rht", "lht"), "leave the option out, or set rht"),
+        ({"handedness": "rht", "voted_handedness": "lht"}, ("--handedness says rht, ", "lht", "rht"), "give --handedness lht"),
+        ({"voted_handedness": "lht"}, ("", "lht", "rht"), "give --handedness lht"),
     ],
-)
-def test_a_doubt_says_what_would_have_the_other_side(attributes: str, options: dict[str, str], told: str) -> None:
-    environment = load(road(attributes=attributes), **options)
-    assert [
-        row["message"] for row in rows(environment, "map_quality") if row["check_id"] == "handedness_disagrees"
-    ] == [told]
+)  # fmt: skip
+def test_a_doubt_says_what_would_have_the_other_side(
+    options: dict[str, str], told: tuple[str, str, str], remedy: str
+) -> None:
+    option, traces, used = told
+    (message,) = messages(load(road(attributes='rule="RHT"'), **options), "handedness_disagrees")
+    assert message == (
+        f"{option}the rule attribute of 1 road says rht, the traces fit {traces}: {used} is used. "
+        f"If this is not right, every direction is wrong: {remedy}."
+    )
 
 
 def test_then_the_attribute() -> None:
     environment = load(road(attributes='rule="LHT"'), CONNECTING, junction(("start", -1)), voted_handedness="rht")
-    assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
+    assert hand(environment) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
 
@@ -79,29 +62,29 @@ def test_then_the_attribute() -> None:
 )
 def test_then_the_junctions(contact: str, to: int, handedness: str) -> None:
     environment = load(road(), CONNECTING, junction((contact, to)))
-    assert (environment.handedness, environment.handedness_source) == (handedness, "junctions")
+    assert hand(environment) == (handedness, "junctions")
     assert "handedness_disagrees" not in checks(environment)
 
 
 def test_junctions_that_list_both_ends_say_nothing() -> None:
     environment = load(road(), CONNECTING, junction(("start", -1), ("end", -1)), voted_handedness="lht")
-    assert (environment.handedness, environment.handedness_source) == ("lht", "traces")
+    assert hand(environment) == ("lht", "traces")
 
 
 def test_then_the_lanes_own_travel_direction() -> None:
     environment = load(
         road(lanes=section(0, travelling(1, "forward"), travelling(-1, "backward"))), voted_handedness="rht"
     )
-    assert (environment.handedness, environment.handedness_source) == ("lht", "attribute")
+    assert hand(environment) == ("lht", "attribute")
     assert "handedness_disagrees" in checks(environment)
 
 
 def test_then_the_traces_then_the_default_with_a_warning() -> None:
     voted = load(road(), voted_handedness="lht")
-    assert (voted.handedness, voted.handedness_source) == ("lht", "traces")
+    assert hand(voted) == ("lht", "traces")
     assert "handedness_default" not in checks(voted)
     guessed = load(road())
-    assert (guessed.handedness, guessed.handedness_source) == ("rht", "default")
+    assert hand(guessed) == ("rht", "default")
     assert checks(guessed)["handedness_default"] == [None]
 
 
@@ -112,9 +95,8 @@ def test_roads_that_disagree_are_named() -> None:
 
 
 def test_one_lane_against_the_rule_of_its_side_is_followed_and_named() -> None:
-    lanes = section(
-        0, travelling(1, "backward"), travelling(-1, "backward"), travelling(-2, "forward"), travelling(-3, "forward")
-    )
+    ways = {1: "backward", -1: "backward", -2: "forward", -3: "forward"}
+    lanes = section(0, *(travelling(*way) for way in ways.items()))
     environment = load(road(lanes=lanes))
     along = {name: row["along_road"] for name, row in lanelets(environment).items()}
     assert along == {"1.0.-3": 1, "1.0.-2": 1, "1.0.-1": -1, "1.0.1": -1}
@@ -138,19 +120,10 @@ def test_the_left_hand_roads_of_netconvert_are_read_by_the_numbers_of_their_lane
     parts = []
     for number, x, length in east:
         numbered = lane(-1, wide) + lane(-2, wide)
-        side = "left" if number == 2 else "right"
         middle = '<center><lane id="0" type="none"/></center>'
-        both = f"<{side}>{numbered}</{side}>" + middle if side == "left" else middle + f"<{side}>{numbered}</{side}>"
-        line = geometry("<line/>", at=(x, 6.4, 0), length=length)
-        parts.append(
-            road(
-                str(number),
-                line,
-                f'<laneSection s="0">{both}</laneSection>',
-                length,
-                junction="9" if number == 2 else "-1",
-            )
-        )
+        both = f"<left>{numbered}</left>{middle}" if number == 2 else f"{middle}<right>{numbered}</right>"
+        line, lanes = geometry("<line/>", at=(x, 6.4, 0), length=length), f'<laneSection s="0">{both}</laneSection>'
+        parts.append(road(str(number), line, lanes, length, junction="9" if number == 2 else "-1"))
     found = load(*parts)
     where = {name: {(p["left_y_m"] + p["right_y_m"]) / 2 for p in line} for name, line in points(found).items()}
     assert {name: sorted(y) for name, y in where.items()} == {

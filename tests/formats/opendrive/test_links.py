@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.formats.opendrive.xodr import checks, lane, lanelets, load, points, road, rows, section
+from tests.formats.maps import checks, lanelets, links, messages, points, values
+from tests.formats.opendrive.signal_text import WIDTH
+from tests.formats.opendrive.xodr import lane, load, road, section
 
-WIDTH = '<width sOffset="0" a="3.5"/>'
+if TYPE_CHECKING:
+    from drivelint.road.map_reader import MapTables
 
 
 def linked(number: int, predecessor: int | None = None, successor: int | None = None, width: str = WIDTH) -> str:
@@ -26,16 +30,26 @@ def joined(end: str, other: str, contact: str, kind: str = "road") -> str:
     return f'<{end} elementType="{kind}" elementId="{other}"{at}/>'
 
 
-def links(environment: object) -> set[tuple[str, str]]:
-    return {(row["from_id"], row["to_id"]) for row in rows(environment, "lane_link")}  # type: ignore[arg-type]
+def two_roads(
+    first: str, second: str, contact: str = "start", *, back: str | None = None, at: str = line(100)
+) -> MapTables:
+    """Return road 1 that leads to road 2 with these lanes; `back`: the end of road 1 to which road 2 leads with its end."""
+    link = "" if back is None else joined("successor", "1", back)
+    return load(
+        road("1", lanes=section(0, first), link=joined("successor", "2", contact)),
+        road("2", at, lanes=section(0, second), link=link),
+    )
+
+
+FACING = line(200, heading=math.pi)
 
 
 def test_sections_of_one_road_are_linked_in_the_direction_of_travel() -> None:
     lanes = section(0, linked(1, successor=1), linked(-1, successor=-2)) + section(
         50, linked(1, predecessor=1), linked(-1), linked(-2, predecessor=-1)
     )
-    assert links(load(road(lanes=lanes))) == {("1.0.-1", "1.1.-2"), ("1.1.1", "1.0.1")}
-    assert links(load(road(lanes=lanes), handedness="lht")) == {("1.1.-2", "1.0.-1"), ("1.0.1", "1.1.1")}
+    assert set(links(load(road(lanes=lanes)))) == {("1.0.-1", "1.1.-2"), ("1.1.1", "1.0.1")}
+    assert set(links(load(road(lanes=lanes), handedness="lht"))) == {("1.1.-2", "1.0.-1"), ("1.0.1", "1.1.1")}
 
 
 @pytest.mark.parametrize("told_by", ["first", "second", "both"])
@@ -46,39 +60,24 @@ def test_one_link_whoever_declares_it(told_by: str) -> None:
         road("1", lanes=section(0, first), link=joined("successor", "2", "start")),
         road("2", line(100), lanes=section(0, second), link=joined("predecessor", "1", "end")),
     )
-    assert links(environment) == {("1.0.-1", "2.0.-1")}
+    assert set(links(environment)) == {("1.0.-1", "2.0.-1")}
     assert checks(environment).keys() == {"handedness_default"}
 
 
 @pytest.mark.parametrize("contact", ["end", ""])
 def test_roads_that_meet_end_to_end_swap_the_sign_of_their_lanes(contact: str) -> None:
     environment = load(
-        road(
-            "1",
-            lanes=section(0, linked(-1, successor=1), linked(1, successor=-1)),
-            link=joined("successor", "2", contact),
-        ),
-        road(
-            "2",
-            line(200, heading=math.pi),
-            lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)),
-            link=joined("successor", "1", "end"),
-        ),
-    )
-    assert links(environment) == {("1.0.-1", "2.0.1"), ("2.0.-1", "1.0.1")}
+        road("1", lanes=section(0, linked(-1, successor=1), linked(1, successor=-1)), link=joined("successor", "2", contact)),
+        road("2", FACING, lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)), link=joined("successor", "1", "end")),
+    )  # fmt: skip
+    assert set(links(environment)) == {("1.0.-1", "2.0.1"), ("2.0.-1", "1.0.1")}
     assert "link_gap" not in checks(environment)
 
 
 def test_a_contact_that_is_not_said_is_the_end_that_names_the_road() -> None:
-    environment = load(
-        road("1", lanes=section(0, linked(-1, successor=1)), link=joined("successor", "2", "")),
-        road("2", line(200, heading=math.pi), lanes=section(0, lane(1)), link=joined("successor", "1", "")),
-    )
-    assert links(environment) == {("1.0.-1", "2.0.1")}
-    unsaid = load(
-        road("1", lanes=section(0, linked(-1, successor=1)), link=joined("successor", "2", "")),
-        road("2", line(200, heading=math.pi), lanes=section(0, lane(1))),
-    )
+    environment = two_roads(linked(-1, successor=1), lane(1), "", back="", at=FACING)
+    assert set(links(environment)) == {("1.0.-1", "2.0.1")}
+    unsaid = two_roads(linked(-1, successor=1), lane(1), "", at=FACING)
     assert checks(unsaid)["missing_link"] == ["1.0.-1"]
 
 
@@ -107,7 +106,7 @@ def test_junctions_entered_at_the_start_and_at_the_end_of_the_connecting_road() 
     for contact, to, connecting in (("start", -1, along), ("end", 1, against)):
         environment = load(*junction(contact, to, connecting))
         name = f"10.0.{to}"
-        assert links(environment) == {("1.0.-1", name), (name, "2.0.-1")}
+        assert set(links(environment)) == {("1.0.-1", name), (name, "2.0.-1")}
         assert lanelets(environment)[name]["junction_id"] == "9"
         assert lanelets(environment)["1.0.-1"]["junction_id"] is None
         assert environment.handedness_source == "junctions"
@@ -117,14 +116,14 @@ def test_junctions_entered_at_the_start_and_at_the_end_of_the_connecting_road() 
 def test_the_incoming_road_says_which_of_its_ends_lies_at_the_junction() -> None:
     elsewhere = road("10", line(-20, length=20), section(0, lane(-1)), 20, junction="9")
     environment = load(*junction("start", -1, elsewhere))
-    assert links(environment) == {("1.0.-1", "10.0.-1")}
+    assert set(links(environment)) == {("1.0.-1", "10.0.-1")}
     assert checks(environment)["link_gap"] == ["1.0.-1"]
 
 
 def test_the_nearer_end_is_taken_where_nobody_says() -> None:
     parts = junction("start", -1, road("10", line(100, length=20), section(0, lane(-1)), 20, junction="9"))
     environment = load(road("1"), *parts[1:])
-    assert links(environment) == {("1.0.-1", "10.0.-1")}
+    assert set(links(environment)) == {("1.0.-1", "10.0.-1")}
 
 
 def test_turn_is_the_heading_change_over_the_lane_entered() -> None:
@@ -133,52 +132,38 @@ def test_turn_is_the_heading_change_over_the_lane_entered() -> None:
         road("1", lanes=section(0, linked(-1, successor=-1)), link=joined("successor", "2", "start")),
         road("2", bend, section(0, linked(-1, predecessor=-1)), 20, joined("predecessor", "1", "end")),
     )
-    assert rows(load(*parts), "lane_link")[0]["turn_rad"] == pytest.approx(1.0)
-    back = rows(load(*parts, handedness="lht"), "lane_link")[0]
-    assert (back["from_id"], back["to_id"]) == ("2.0.-1", "1.0.-1")
-    assert back["turn_rad"] == pytest.approx(0.0)
+    assert values(load(*parts), "lane_link", "turn_rad") == [1.0]
+    back = load(*parts, handedness="lht")
+    assert values(back, "lane_link", "from_id to_id turn_rad") == [("2.0.-1", "1.0.-1", 0.0)]
 
 
 def test_a_link_to_a_lane_or_road_that_is_missing_is_named() -> None:
-    gone = load(
-        road(
-            "1",
-            lanes=section(0, linked(-1, successor=-4), linked(-2, successor=-2)),
-            link=joined("successor", "2", "start"),
-        ),
-        road("2", line(100)),
-    )
+    lanes = section(0, linked(-1, successor=-4), linked(-2, successor=-2))
+    gone = load(road("1", lanes=lanes, link=joined("successor", "2", "start")), road("2", line(100)))
     assert checks(gone)["missing_link"] == ["1.0.-1", "1.0.-2"]
     nowhere = load(road(lanes=section(0, linked(-1, successor=-1)), link=joined("successor", "77", "start")))
     assert checks(nowhere)["missing_link"] == ["1.0.-1"]
     wrong = '<junction id="9"><connection id="0" incomingRoad="1" connectingRoad="5" contactPoint="start"/></junction>'
     assert checks(load(road(), wrong))["missing_link"] == ["5"]
-    severities = {row["severity"] for row in rows(gone, "map_quality") if row["check_id"] == "missing_link"}
-    assert severities == {"error"}
+    assert set(values(gone, "map_quality", "severity", check_id="missing_link")) == {"error"}
 
 
 def test_a_link_that_the_map_forgot_is_named() -> None:
     environment = load(road("1"), road("2", line(100)))
-    assert links(environment) == set()
+    assert links(environment) == []
     assert checks(environment)["unlinked_end"] == ["1.0.-1", "2.0.1"]
 
 
 def test_a_link_over_a_gap_is_kept_and_named_with_its_distance() -> None:
-    environment = load(
-        road("1", lanes=section(0, linked(-1, successor=-1)), link=joined("successor", "2", "start")),
-        road("2", line(102), lanes=section(0, linked(-1))),
-    )
-    assert links(environment) == {("1.0.-1", "2.0.-1")}
-    message = next(row["message"] for row in rows(environment, "map_quality") if row["check_id"] == "link_gap")
+    environment = two_roads(linked(-1, successor=-1), linked(-1), at=line(102))
+    assert set(links(environment)) == {("1.0.-1", "2.0.-1")}
+    (message,) = messages(environment, "link_gap")
     assert "2.00 m" in message
 
 
 def test_lanes_that_are_driven_towards_each_other_are_not_linked() -> None:
-    environment = load(
-        road("1", lanes=section(0, linked(-1, successor=1)), link=joined("successor", "2", "start")),
-        road("2", line(100), lanes=section(0, linked(1))),
-    )
-    assert links(environment) == set()
+    environment = two_roads(linked(-1, successor=1), linked(1))
+    assert links(environment) == []
     assert checks(environment)["direction_conflict"] == ["1.0.-1"]
 
 
@@ -190,7 +175,7 @@ def test_links_pass_through_a_section_that_is_a_rounding_error() -> None:
     )
     environment = load(road(lanes=lanes))
     assert set(lanelets(environment)) == {"1.0.-1", "1.2.-1", "1.2.-2"}
-    assert links(environment) == {("1.0.-1", "1.2.-2")}
+    assert set(links(environment)) == {("1.0.-1", "1.2.-2")}
     assert checks(environment)["short_section"] == ["1"]
 
 
@@ -212,7 +197,7 @@ def test_sides_may_be_cut_differently() -> None:
     assert {name: round(row["length_m"], 6) for name, row in found.items()} == {
         "1.0.-1": 40.0, "1.0.1": 100.0, "1.1.-2": 60.0, "1.1.-1": 60.0,
     }  # fmt: skip
-    assert links(environment) == {("1.0.-1", "1.1.-1")}
+    assert set(links(environment)) == {("1.0.-1", "1.1.-1")}
     assert found["1.1.-1"]["left_id"] == found["1.0.-1"]["left_id"] == "1.0.1"
     assert found["1.0.1"]["left_id"] == "1.1.-1"  # the one that it lies longest beside
 
@@ -245,7 +230,7 @@ def test_mirrored_handedness_is_the_same_road_driven_the_other_way() -> None:
         60, linked(1, predecessor=1), linked(-1)
     )
     right, left = load(road(lanes=lanes)), load(road(lanes=lanes), handedness="lht")
-    assert links(left) == {(b, a) for a, b in links(right)}
+    assert set(links(left)) == {(b, a) for a, b in links(right)}
     for name, line_ in points(right).items():
         other = points(left)[name][::-1]
         assert [(p["x_m"], p["y_m"]) for p in line_] == [(p["x_m"], p["y_m"]) for p in other]

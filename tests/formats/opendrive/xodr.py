@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
+from tests.formats.maps import checks, lanelets, points, rows
 
 if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
+
+__all__ = ["LINE", "checks", "geometry", "lane", "lanelets", "load", "points", "road", "rows", "section", "xodr"]
 
 LINE = '<geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>'
 
@@ -55,26 +58,3 @@ def xodr(*parts: str) -> str:
 
 def load(*parts: str, **options: Any) -> MapTables:
     return load_map(MapSource("small.xodr", xodr(*parts).encode()), **options)
-
-
-def rows(environment: MapTables, table: str) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = environment.tables[table].to_pylist()
-    return found
-
-
-def lanelets(environment: MapTables) -> dict[str, dict[str, Any]]:
-    return {row["lanelet_id"]: row for row in rows(environment, "lanelet")}
-
-
-def points(environment: MapTables) -> dict[str, list[dict[str, Any]]]:
-    found: dict[str, list[dict[str, Any]]] = {}
-    for row in rows(environment, "lane_point"):
-        found.setdefault(row["lanelet_id"], []).append(row)
-    return found
-
-
-def checks(environment: MapTables) -> dict[str, list[str | None]]:
-    found: dict[str, list[str | None]] = {}
-    for row in rows(environment, "map_quality"):
-        found.setdefault(row["check_id"], []).append(row["lanelet_id"])
-    return found

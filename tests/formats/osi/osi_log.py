@@ -20,108 +20,54 @@ _SCALARS = {
     "uint32": _F.TYPE_UINT32,
     "string": _F.TYPE_STRING,
 }
-# message -> (field, number, type); a type in [] is repeated; an upper-case type is a message, E: an enumeration
-MESSAGES: dict[str, list[tuple[str, int, str]]] = {
-    "Identifier": [("value", 1, "uint64")],
-    "Timestamp": [("seconds", 1, "int64"), ("nanos", 2, "uint32")],
-    "Vector3d": [("x", 1, "double"), ("y", 2, "double"), ("z", 3, "double")],
-    "Dimension3d": [("length", 1, "double"), ("width", 2, "double"), ("height", 3, "double")],
-    "Orientation3d": [("roll", 1, "double"), ("pitch", 2, "double"), ("yaw", 3, "double")],
-    "BaseMoving": [
-        ("dimension", 1, "Dimension3d"),
-        ("position", 2, "Vector3d"),
-        ("orientation", 3, "Orientation3d"),
-        ("velocity", 4, "Vector3d"),
-        ("acceleration", 5, "Vector3d"),
-        ("base_polygon", 7, "[Vector3d]"),
-    ],
-    "LightState": [
-        ("indicator_state", 1, "E:Indicator"),
-        ("brake_light_state", 4, "E:Brake"),
-        ("head_light", 20, "E:Generic"),
-        ("high_beam", 21, "E:Generic"),
-    ],
-    "VehicleClassification": [("type", 1, "E:VehicleType"), ("light_state", 2, "LightState")],
-    "MovingObject": [
-        ("id", 1, "Identifier"),
-        ("base", 2, "BaseMoving"),
-        ("type", 3, "E:ObjectType"),
-        ("vehicle_classification", 6, "VehicleClassification"),
-        ("model_reference", 7, "string"),
-    ],
-    "BaseStationary": [
-        ("dimension", 1, "Dimension3d"),
-        ("position", 2, "Vector3d"),
-        ("orientation", 3, "Orientation3d"),
-    ],
-    "LightClassification": [
-        ("color", 1, "E:Color"),
-        ("icon", 2, "uint32"),
-        ("mode", 3, "E:Mode"),
-        ("assigned_lane_id", 5, "[Identifier]"),
-    ],
-    "ExternalReference": [("reference", 1, "string"), ("type", 2, "string"), ("identifier", 3, "[string]")],
-    "TrafficLight": [
-        ("id", 1, "Identifier"),
-        ("base", 2, "BaseStationary"),
-        ("classification", 3, "LightClassification"),
-        ("source_reference", 5, "[ExternalReference]"),
-    ],
-    "GroundTruth": [
-        ("timestamp", 2, "Timestamp"),
-        ("host_vehicle_id", 3, "Identifier"),
-        ("moving_object", 5, "[MovingObject]"),
-        ("traffic_light", 7, "[TrafficLight]"),
-        ("country_code", 13, "uint32"),
-    ],
-    "SensorView": [
-        ("timestamp", 2, "Timestamp"),
-        ("global_ground_truth", 9, "GroundTruth"),
-        ("host_vehicle_id", 10, "Identifier"),
-    ],
-    "MapAsamOpenDrive": [("map_reference", 1, "string"), ("open_drive_xml_content", 2, "string")],
+# message -> its fields: name, number, type; a * means repeated, an upper-case type is a message, E: an enumeration
+MESSAGES = {
+    "Identifier": "value 1 uint64",
+    "Timestamp": "seconds 1 int64, nanos 2 uint32",
+    "Vector3d": "x 1 double, y 2 double, z 3 double",
+    "Dimension3d": "length 1 double, width 2 double, height 3 double",
+    "Orientation3d": "roll 1 double, pitch 2 double, yaw 3 double",
+    "BaseMoving": "dimension 1 Dimension3d, position 2 Vector3d, orientation 3 Orientation3d, velocity 4 Vector3d, "
+    "acceleration 5 Vector3d, base_polygon 7 *Vector3d",
+    "LightState": "indicator_state 1 E:Indicator, brake_light_state 4 E:Brake, head_light 20 E:Generic, high_beam 21 E:Generic",
+    "VehicleClassification": "type 1 E:VehicleType, light_state 2 LightState",
+    "MovingObject": "id 1 Identifier, base 2 BaseMoving, type 3 E:ObjectType, vehicle_classification 6 VehicleClassification, "
+    "model_reference 7 string",
+    "BaseStationary": "dimension 1 Dimension3d, position 2 Vector3d, orientation 3 Orientation3d",
+    "LightClassification": "color 1 E:Color, icon 2 uint32, mode 3 E:Mode, assigned_lane_id 5 *Identifier",
+    "ExternalReference": "reference 1 string, type 2 string, identifier 3 *string",
+    "TrafficLight": "id 1 Identifier, base 2 BaseStationary, classification 3 LightClassification, source_reference 5 *ExternalReference",
+    "GroundTruth": "timestamp 2 Timestamp, host_vehicle_id 3 Identifier, moving_object 5 *MovingObject, traffic_light 7 *TrafficLight, "
+    "country_code 13 uint32",
+    "SensorView": "timestamp 2 Timestamp, global_ground_truth 9 GroundTruth, host_vehicle_id 10 Identifier",
+    "MapAsamOpenDrive": "map_reference 1 string, open_drive_xml_content 2 string",
 }
-ENUMS: dict[str, dict[str, int]] = {
-    "ObjectType": {"TYPE_UNKNOWN": 0, "TYPE_OTHER": 1, "TYPE_VEHICLE": 2, "TYPE_PEDESTRIAN": 3, "TYPE_ANIMAL": 4},
-    "VehicleType": {"VT_TYPE_UNKNOWN": 0, "TYPE_CAR": 4, "TYPE_HEAVY_TRUCK": 7, "TYPE_BICYCLE": 11},
-    "Indicator": {
-        "INDICATOR_STATE_UNKNOWN": 0,
-        "INDICATOR_STATE_OTHER": 1,
-        "INDICATOR_STATE_OFF": 2,
-        "INDICATOR_STATE_LEFT": 3,
-        "INDICATOR_STATE_RIGHT": 4,
-        "INDICATOR_STATE_WARNING": 5,
-    },
-    "Brake": {
-        "BRAKE_LIGHT_STATE_UNKNOWN": 0,
-        "BRAKE_LIGHT_STATE_OFF": 2,
-        "BRAKE_LIGHT_STATE_NORMAL": 3,
-        "BRAKE_LIGHT_STATE_STRONG": 4,
-    },
-    "Generic": {
-        "GENERIC_LIGHT_STATE_UNKNOWN": 0,
-        "GENERIC_LIGHT_STATE_OTHER": 1,
-        "GENERIC_LIGHT_STATE_OFF": 2,
-        "GENERIC_LIGHT_STATE_ON": 3,
-        "GENERIC_LIGHT_STATE_FLASHING_AMBER": 6,
-    },
-    "Color": {"COLOR_UNKNOWN": 0, "COLOR_RED": 2, "COLOR_YELLOW": 3, "COLOR_GREEN": 4},
-    "Mode": {"MODE_UNKNOWN": 0, "MODE_OFF": 2, "MODE_CONSTANT": 3, "MODE_FLASHING": 4},
+# enumeration -> its names and numbers
+ENUMS = {
+    "ObjectType": "TYPE_UNKNOWN 0, TYPE_OTHER 1, TYPE_VEHICLE 2, TYPE_PEDESTRIAN 3, TYPE_ANIMAL 4",
+    "VehicleType": "VT_TYPE_UNKNOWN 0, TYPE_CAR 4, TYPE_HEAVY_TRUCK 7, TYPE_BICYCLE 11",
+    "Indicator": "INDICATOR_STATE_UNKNOWN 0, INDICATOR_STATE_OTHER 1, INDICATOR_STATE_OFF 2, INDICATOR_STATE_LEFT 3, "
+    "INDICATOR_STATE_RIGHT 4, INDICATOR_STATE_WARNING 5",
+    "Brake": "BRAKE_LIGHT_STATE_UNKNOWN 0, BRAKE_LIGHT_STATE_OFF 2, BRAKE_LIGHT_STATE_NORMAL 3, BRAKE_LIGHT_STATE_STRONG 4",
+    "Generic": "GENERIC_LIGHT_STATE_UNKNOWN 0, GENERIC_LIGHT_STATE_OTHER 1, GENERIC_LIGHT_STATE_OFF 2, GENERIC_LIGHT_STATE_ON 3, "
+    "GENERIC_LIGHT_STATE_FLASHING_AMBER 6",
+    "Color": "COLOR_UNKNOWN 0, COLOR_RED 2, COLOR_YELLOW 3, COLOR_GREEN 4",
+    "Mode": "MODE_UNKNOWN 0, MODE_OFF 2, MODE_CONSTANT 3, MODE_FLASHING 4",
 }
 
 
 def _file() -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_small.proto", package="osi3", syntax="proto2")
-    for name, values in ENUMS.items():
+    for name, text in ENUMS.items():
         enum = file.enum_type.add(name=name)
-        for word, number in values.items():
-            enum.value.add(name=word, number=number)
-    for name, fields in MESSAGES.items():
+        for word, number in map(str.split, text.split(", ")):
+            enum.value.add(name=word, number=int(number))
+    for name, text in MESSAGES.items():
         message = file.message_type.add(name=name)
-        for field, number, kind in fields:
-            plain = kind.strip("[]")
-            label = _F.LABEL_REPEATED if kind.startswith("[") else _F.LABEL_OPTIONAL
-            item = message.field.add(name=field, number=number, label=label)
+        for field, number, kind in map(str.split, text.split(", ")):
+            plain = kind.lstrip("*")
+            label = _F.LABEL_REPEATED if kind.startswith("*") else _F.LABEL_OPTIONAL
+            item = message.field.add(name=field, number=int(number), label=label)
             if plain in _SCALARS:
                 item.type = _SCALARS[plain]
             elif plain.startswith("E:"):

@@ -152,8 +152,3 @@ def two_way(**options: Any) -> Road:
     road.logical(2, [11], [12], BACK, beside=([], [1]))
     road.logical(3, [13], [14], 0, kind=4, beside=([1], []))
     return road
-
-
-def table(environment: MapTables, name: str) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = environment.tables[name].drop_columns("environment_id").to_pylist()
-    return rows

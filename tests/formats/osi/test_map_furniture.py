@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.formats.osi.osi_road import Road, table, two_way
+from tests.formats.maps import rows, values
+from tests.formats.osi.osi_road import Road, two_way
 
 if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 
-def stops(environment: MapTables) -> list[tuple[str, str, float]]:
-    return [(r["stop_line_id"], r["lanelet_id"], round(r["lane_s_m"], 2)) for r in table(environment, "stop_line")]
+def stops(environment: MapTables) -> list[Any]:
+    return values(environment, "stop_line", "stop_line_id lanelet_id lane_s_m", digits=2)
 
 
 def warned(environment: MapTables) -> list[str]:
-    return [r["check_id"] for r in table(environment, "map_quality")]
+    return values(environment, "map_quality", "check_id")
 
 
 @pytest.mark.parametrize(("y", "yaw", "expected"), [(-1.75, 0.0, ("1", 80.0)), (1.75, math.pi, ("2", 20.0))])
@@ -87,7 +88,7 @@ def test_what_is_out_of_service_does_not_hold() -> None:
     road.sign(51, (80.0, -5.0, 2.0), 17, logical=[1]).main_sign.classification.is_out_of_service = True
     road.bulb(52, (80.0, -5.0, 5.0), logical=[1]).classification.is_out_of_service = True
     environment = road.load()
-    assert not [*stops(environment), *table(environment, "traffic_signal"), *warned(environment)]
+    assert not [*stops(environment), *rows(environment, "traffic_signal"), *warned(environment)]
 
 
 def test_signs() -> None:
@@ -98,16 +99,15 @@ def test_signs() -> None:
     coded.country, coded.code, coded.variability = "DE", "276", 3
     road.sign(54, (10.0, -5.5, 2.0), 210, logical=[1, 2])
     environment = road.load()
-    found = table(environment, "traffic_signal")
-    columns = ("signal_id", "kind", "country", "type", "value", "unit", "dynamic", "lanelet_id", "lane_s_m")
-    assert [tuple(r[c] for c in columns) for r in found] == [
+    columns = "signal_id kind country type value unit dynamic lanelet_id lane_s_m"
+    assert values(environment, "traffic_signal", columns) == [
         ("51", "stop", "osi", "17", None, None, False, "1", 60.0),
         ("52", "speed_limit", "osi", "52", 50.0, "km/h", False, "2", 60.0),
         ("53", "no_overtaking", "de", "276", None, None, True, "1", 20.0),
         ("54", None, "osi", "210", None, None, False, "1", 10.0),
         ("54", None, "osi", "210", None, None, False, "2", 90.0),
     ]
-    assert [(r["x_m"], r["y_m"]) for r in found[:2]] == [(60.0, -5.5), (40.0, 4.5)]
+    assert values(environment, "traffic_signal", "x_m y_m")[:2] == [(60.0, -5.5), (40.0, 4.5)]
 
 
 def test_a_sign_without_a_lane_is_told() -> None:
@@ -116,7 +116,7 @@ def test_a_sign_without_a_lane_is_told() -> None:
     road.sign(52, (60.0, -5.5, 2.0), 17, lanes=[99])
     road.bulb(53, (60.0, -5.5, 5.0))
     environment = road.load()
-    assert not table(environment, "traffic_signal")
+    assert not rows(environment, "traffic_signal")
     assert warned(environment) == ["signal_without_lane"] * 3
 
 
@@ -127,7 +127,7 @@ def test_a_sign_of_a_physical_lane_holds_for_the_logical_one_that_it_faces(yaw: 
     for logical in road.truth.logical_lane[:2]:
         logical.physical_lane_reference.add().physical_lane_id.value = 70
     road.sign(51, (60.0, -5.5, 2.0), 17, lanes=[70], yaw=yaw)
-    assert [r["lanelet_id"] for r in table(road.load(), "traffic_signal")] == [lane]
+    assert values(road.load(), "traffic_signal", "lanelet_id") == [lane]
 
 
 def test_of_the_logical_lanes_one_after_another_on_a_physical_one_that_beside_the_sign_is_meant() -> None:
@@ -138,8 +138,8 @@ def test_of_the_logical_lanes_one_after_another_on_a_physical_one_that_beside_th
         road.logical(1 + k, [11 + 10 * k], [12 + 10 * k], span=span, on=[70])
     for number, x in ((51, 60.0), (52, 160.0), (53, 215.0)):
         road.sign(number, (x, -5.5, 2.0), 17, lanes=[70])
-    found = {r["signal_id"]: (r["lanelet_id"], r["lane_s_m"]) for r in table(road.load(), "traffic_signal")}
-    assert found == {"51": ("1", 60.0), "52": ("2", 60.0), "53": ("2", pytest.approx(100.0))}
+    found = values(road.load(), "traffic_signal", "signal_id lanelet_id lane_s_m")
+    assert found == [("51", "1", 60.0), ("52", "2", 60.0), ("53", "2", 100.0)]
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_the_bulbs_of_a_light_are_one_signal(icons: tuple[int, ...], kind: str |
     road = two_way()
     for k, icon in enumerate(icons):
         road.bulb(60 + k, (95.0, -5.0, 5.0 - 0.3 * k), icon, logical=[1], reference=("net.asam.opendrive", "sig 7"))
-    (found,) = table(road.load(), "traffic_signal")
+    (found,) = rows(road.load(), "traffic_signal")
     assert (found["signal_id"], found["kind"], found["dynamic"], found["lanelet_id"]) == ("sig 7", kind, True, "1")
     assert (None if found["turns"] is None else set(found["turns"])) == turns
 
@@ -166,8 +166,6 @@ def test_the_bulbs_of_a_light_are_one_signal(icons: tuple[int, ...], kind: str |
 def test_a_zebra_crossing() -> None:
     road = two_way()
     road.marking(50, (40.0, 0.0, 0.0), sign=87, width=7.0, length=4.0)
-    found = [tuple(r.values()) for r in table(road.load(), "crossing")]
-    assert found == [
-        ("50", "1", pytest.approx(38.0), pytest.approx(42.0), "zebra"),
-        ("50", "2", pytest.approx(58.0), pytest.approx(62.0), "zebra"),
-    ]
+    assert values(road.load(), "crossing", "crossing_id lanelet_id s_start_m s_end_m kind") == [
+        ("50", "1", 38.0, 42.0, "zebra"), ("50", "2", 58.0, 62.0, "zebra"),
+    ]  # fmt: skip

@@ -15,6 +15,7 @@ from drivelint.errors import MapError
 from drivelint.formats import load_map, read_source, read_trace
 from drivelint.formats.osi.schema import message_class
 from drivelint.road.map_reader import MapSource
+from tests.formats.maps import hand, lanelet, lanelets, links, points, rows, values
 from tests.formats.osi.map_trace import Trace
 from tests.shared_data import shared
 
@@ -38,30 +39,18 @@ def two_way() -> Trace:
 
 def test_lanes_run_in_the_direction_of_travel() -> None:
     environment = two_way().load(offset=(100.0, 0.0))
-    rows = {r["lanelet_id"]: r for r in environment.tables["lanelet"].to_pylist()}
-    assert {k: (r["lane_type"], r["drivable"], round(r["width_m"], 3)) for k, r in rows.items()} == {
-        "1": ("driving", True, 3.5),
-        "2": ("driving", True, 3.5),
-        "3": ("sidewalk", False, 1.5),
-    }
-    assert (rows["1"]["left_id"], rows["1"]["left_against"], rows["1"]["right_id"], rows["1"]["right_against"]) == (
-        "2",
-        True,
-        "3",
-        False,
-    )
-    assert (rows["2"]["left_id"], rows["2"]["left_against"], rows["2"]["right_id"]) == ("1", True, None)
-    assert (environment.handedness, environment.handedness_source) == ("rht", "lanes")
-    first = {
-        r["lanelet_id"]: (r["x_m"], r["y_m"], r["tx"])
-        for r in environment.tables["lane_point"].to_pylist()
-        if r["k"] == 0
-    }
-    assert first["1"] == pytest.approx((100.0, -1.75, 1.0))
-    assert first["2"] == pytest.approx((140.0, 1.75, -1.0))
-    marks = {(r["lanelet_id"], r["side"]): r["marking"] for r in environment.tables["lane_boundary"].to_pylist()}
-    assert (marks["1", "left"], marks["1", "right"]) == ("solid", "curb")
-    assert (marks["2", "left"], marks["2", "right"]) == ("solid", "broken")
+    assert values(environment, "lanelet", "lanelet_id lane_type drivable width_m", digits=3) == [
+        ("1", "driving", True, 3.5), ("2", "driving", True, 3.5), ("3", "sidewalk", False, 1.5),
+    ]  # fmt: skip
+    assert lanelet(environment, "1", "left_id left_against right_id right_against") == ("2", True, "3", False)
+    assert lanelet(environment, "2", "left_id left_against right_id") == ("1", True, None)
+    assert hand(environment) == ("rht", "lanes")
+    first = values(environment, "lane_point", "lanelet_id x_m y_m tx", k=0)
+    assert first[:2] == [("1", 100.0, -1.75, 1.0), ("2", 140.0, 1.75, -1.0)]
+    marks = values(environment, "lane_boundary", "lanelet_id side marking")
+    assert marks[:4] == [
+        ("1", "left", "solid"), ("1", "right", "curb"), ("2", "left", "solid"), ("2", "right", "broken"),
+    ]  # fmt: skip
 
 
 def test_what_follows_is_turned_too() -> None:
@@ -72,8 +61,7 @@ def test_what_follows_is_turned_too() -> None:
     trace.lane(5, row(1.75, x0=40.0, x1=80.0), left=21, right=22, ahead=False, pairs=((2, None),))
     for lane, after in ((trace.truth.lane[0], 4), (trace.truth.lane[1], 5)):
         lane.classification.lane_pairing.add().successor_lane_id.value = after
-    links = [(r["from_id"], r["to_id"]) for r in trace.load().tables["lane_link"].to_pylist()]
-    assert links == [("1", "4"), ("5", "2")]
+    assert links(trace.load()) == [("1", "4"), ("5", "2")]
 
 
 @pytest.mark.parametrize(("ahead", "link"), [(True, ("1", "4")), (False, ("4", "1"))])
@@ -87,8 +75,7 @@ def test_a_link_is_said_by_either_lane(ahead: bool, link: tuple[str, str], by: s
     later = row(0.0, x0=40.0, x1=80.0)
     before = None if by == "the first along the line" else 1
     trace.lane(4, later, left=11, right=12, ahead=ahead, pairs=((before, None),))
-    links = [(r["from_id"], r["to_id"]) for r in trace.load(handedness="rht").tables["lane_link"].to_pylist()]
-    assert links == [link]
+    assert links(trace.load(handedness="rht")) == [link]
 
 
 def test_a_boundary_that_reaches_beyond_the_lane_is_cut() -> None:
@@ -96,29 +83,24 @@ def test_a_boundary_that_reaches_beyond_the_lane_is_cut() -> None:
     trace.bound(11, [(-50.0, 9.0), *row(1.75), (90.0, 9.0)])
     trace.bound(12, row(-1.75))
     trace.lane(1, row(0.0), left=11, right=12)
-    (lane,) = trace.load(handedness="rht").tables["lanelet"].to_pylist()
-    assert (lane["width_m"], lane["length_m"]) == pytest.approx((3.5, 40.0))
+    assert values(trace.load(handedness="rht"), "lanelet", "width_m length_m") == [(3.5, 40.0)]
 
 
 def test_ways_through_an_intersection_are_drawn() -> None:
     trace = Trace()
-    for name, line in (
-        (11, row(1.75)),
-        (12, row(-1.75)),
-        (13, [(58.25, 20.0), (58.25, 60.0)]),
-        (14, [(61.75, 20.0), (61.75, 60.0)]),
-    ):
-        trace.bound(name, line)
+    for name, y, x in ((11, 1.75, 58.25), (12, -1.75, 61.75)):
+        trace.bound(name, row(y))
+        trace.bound(name + 2, [(x, 20.0), (x, 60.0)])
     trace.lane(1, row(0.0), left=11, right=12, pairs=((None, 9),))
     trace.lane(2, [(60.0, 20.0), (60.0, 60.0)], left=13, right=14, pairs=((9, None),))
     trace.lane(9, [(40.0, 0.0), (60.0, 20.0)], kind=4, pairs=((1, 2), (2, 1)))
-    tables = trace.load(handedness="rht").tables
-    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
-    assert rows["9.1.2"]["junction_id"] == "j9"
-    assert 2.5 < rows["9.1.2"]["width_m"] < 4.5
-    links = {(r["from_id"], r["to_id"]): r["turn_rad"] for r in tables["lane_link"].to_pylist()}
-    assert {("1", "9.1.2"), ("9.1.2", "2")} <= set(links)
-    assert links["1", "9.1.2"] == pytest.approx(np.pi / 2, abs=0.2)
+    environment = trace.load(handedness="rht")
+    way = lanelets(environment)["9.1.2"]
+    assert way["junction_id"] == "j9"
+    assert 2.5 < way["width_m"] < 4.5
+    assert {("1", "9.1.2"), ("9.1.2", "2")} <= set(links(environment))
+    (turn,) = values(environment, "lane_link", "turn_rad", from_id="1", to_id="9.1.2")
+    assert turn == pytest.approx(np.pi / 2, abs=0.2)
 
 
 def test_lanes_without_boundaries_make_no_map() -> None:
@@ -145,18 +127,17 @@ def bounded(ahead: bool | None = True) -> Trace:
 
 @pytest.mark.parametrize("ahead", [True, False])
 def test_lanes_by_their_bounds_alone(ahead: bool) -> None:
-    tables = bounded(ahead).load(handedness="rht").tables
-    rows = {r["lanelet_id"]: r for r in tables["lanelet"].to_pylist()}
-    assert {k: (r["lane_type"], r["drivable"]) for k, r in rows.items()} == {
-        "1": ("driving", True), "2": ("driving", True), "3": ("stop", False),
-    }  # fmt: skip
-    assert [rows[k]["length_m"] for k in "123"] == pytest.approx([600.0, 297.0, 600.0], abs=1.0)
-    assert [rows[k]["width_m"] for k in "123"] == pytest.approx([3.0, 3.0, 3.0], abs=0.05)
-    points = {k: [r for r in tables["lane_point"].to_pylist() if r["lanelet_id"] == k] for k in "12"}
-    first, last = points["1"][0], points["1"][-1]
+    environment = bounded(ahead).load(handedness="rht")
+    assert values(environment, "lanelet", "lanelet_id lane_type drivable") == [
+        ("1", "driving", True), ("2", "driving", True), ("3", "stop", False),
+    ]  # fmt: skip
+    assert values(environment, "lanelet", "length_m") == pytest.approx([600.0, 297.0, 600.0], abs=1.0)
+    assert values(environment, "lanelet", "width_m") == pytest.approx([3.0, 3.0, 3.0], abs=0.05)
+    way = points(environment)
+    first, last = way["1"][0], way["1"][-1]
     assert (first["x_m"], last["x_m"]) == pytest.approx((0.0, 600.0) if ahead else (600.0, 0.0))
     assert (first["left_y_m"], first["right_y_m"]) == pytest.approx((1.5, -1.5) if ahead else (-1.5, 1.5))
-    assert max(p["half_width_m"] for p in points["2"]) == pytest.approx(1.5, abs=0.05)
+    assert max(p["half_width_m"] for p in way["2"]) == pytest.approx(1.5, abs=0.05)
 
 
 def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
@@ -168,17 +149,16 @@ def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
     trace.truth.lane[0].classification.centerline_is_driving_direction = False
     trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
     environment = trace.load(handedness="rht")
-    assert environment.tables["lanelet"]["lanelet_id"].to_pylist() == ["1", "3"]
-    (problem,) = [r for r in environment.tables["map_quality"].to_pylist() if r["severity"] == "error"]
-    assert (problem["lanelet_id"], "the direction in which" in problem["message"]) == ("2", True)
+    assert list(lanelets(environment)) == ["1", "3"]
+    ((name, message),) = values(environment, "map_quality", "lanelet_id message", severity="error")
+    assert (name, "the direction in which" in message) == ("2", True)
 
 
 def test_a_writer_that_leaves_out_what_is_false_means_false() -> None:
     """esmini: some lanes say true, none says false."""
     trace = two_way()
     trace.truth.lane[1].classification.ClearField("centerline_is_driving_direction")
-    first = next(r for r in trace.load().tables["lane_point"].to_pylist() if r["lanelet_id"] == "2")
-    assert first["tx"] == -1.0
+    assert values(trace.load(), "lane_point", "tx", lanelet_id="2", k=0) == [-1.0]
 
 
 def gap(trace: Trace) -> None:
@@ -214,10 +194,9 @@ def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, wha
     trace.bound(22, row(46.5))
     trace.lane(9, row(48.25), left=21, right=22)
     spoil(trace)
-    tables = trace.load(handedness="rht").tables
-    problems = {r["lanelet_id"]: r["message"] for r in tables["map_quality"].to_pylist() if r["severity"] == "error"}
-    assert what in problems["1"]
-    assert "1" not in tables["lanelet"]["lanelet_id"].to_pylist()
+    environment = trace.load(handedness="rht")
+    assert what in dict(values(environment, "map_quality", "lanelet_id message", severity="error"))["1"]
+    assert "1" not in lanelets(environment)
 
 
 def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
@@ -232,8 +211,9 @@ def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
     for lane in truth.lane:  # if it said that they are driven as their boundaries run, as the host drives
         lane.classification.centerline_is_driving_direction = True
     environment = load_map(MapSource("embedded", truth.SerializeToString(deterministic=True)))
-    rows = {r["lanelet_id"]: (r["drivable"], round(r["length_m"])) for r in environment.tables["lanelet"].to_pylist()}
-    assert rows == {"1": (True, 800), "2": (True, 800), "3": (True, 300), "4": (False, 510)}
+    assert values(environment, "lanelet", "lanelet_id drivable length_m", digits=0) == [
+        ("1", True, 800), ("2", True, 800), ("3", True, 300), ("4", False, 510),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -250,13 +230,11 @@ def test_real_lanes_lie_on_the_real_road(name: str, road: str) -> None:
     assert trace.embedded_map is not None
     carried = load_map(MapSource("embedded", trace.embedded_map))
     own = load_map(read_source(shared(road)))
-    lanes = {
-        r["lanelet_id"]: r for r in carried.tables["lanelet"].to_pylist() if r["drivable"] and r["junction_id"] is None
-    }
-    drivable = {r["lanelet_id"] for r in own.tables["lanelet"].to_pylist() if r["drivable"]}
-    theirs = [r for r in own.tables["lane_point"].to_pylist() if r["lanelet_id"] in drivable]
+    lanes = values(carried, "lanelet", "lanelet_id", drivable=True, junction_id=None)
+    drivable = set(values(own, "lanelet", "lanelet_id", drivable=True))
+    theirs = [r for r in rows(own, "lane_point") if r["lanelet_id"] in drivable]
     tree = shapely.STRtree(shapely.points([(r["x_m"], r["y_m"]) for r in theirs]))
-    mine = [r for r in carried.tables["lane_point"].to_pylist() if r["lanelet_id"] in lanes]
+    mine = [r for r in rows(carried, "lane_point") if r["lanelet_id"] in lanes]
     near = tree.nearest(shapely.points([(r["x_m"], r["y_m"]) for r in mine]))
     pairs = [(r, theirs[i]) for r, i in zip(mine, near, strict=True)]
     across = np.array([abs((r["x_m"] - t["x_m"]) * t["ty"] - (r["y_m"] - t["y_m"]) * t["tx"]) for r, t in pairs])
@@ -273,9 +251,8 @@ def test_the_lanes_of_the_merge_are_joined_up() -> None:
     trace = read_trace(shared("osi/highway_merge.osi"), IngestOptions(ego="0"))
     assert trace.embedded_map is not None
     carried = load_map(MapSource("embedded", trace.embedded_map))
-    links = {(r["from_id"], r["to_id"]) for r in carried.tables["lane_link"].to_pylist()}
     for way in (("24", "31", "3", "11"), ("25", "32", "4", "12"), ("18", "34", "5", "12")):
-        assert set(pairwise(way)) <= links
+        assert set(pairwise(way)) <= set(links(carried))
 
 
 @pytest.mark.parametrize("ahead", [True, False])
@@ -293,8 +270,7 @@ def test_a_side_that_ends_early_is_led_on_beside_the_middle(ahead: bool, bend: f
     trace.bound(12, line(-1.75, 0.0, 40.0))
     trace.lane(1, line(0.0, 0.0, 40.0), left=11, right=12, ahead=ahead)
     environment = trace.load(handedness="rht")
-    (lane,) = environment.tables["lanelet"].to_pylist()
-    assert (lane["width_m"], lane["length_m"]) == (pytest.approx(3.5, abs=0.05), pytest.approx(40.0, abs=0.05))
-    places = [(r["x_m"], r["y_m"]) for r in environment.tables["lane_point"].to_pylist()]
+    assert values(environment, "lanelet", "width_m length_m") == [pytest.approx((3.5, 40.0), abs=0.05)]
+    places = values(environment, "lane_point", "x_m y_m")
     ends = [line(0.0, 0.0, 40.0)[k] for k in ((0, -1) if ahead else (-1, 0))]
     assert [places[0], places[-1]] == [pytest.approx(end, abs=0.05) for end in ends]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from drivelint.errors import TraceError
-from tests.formats.logs import actors, at, quality, states
+from tests.formats.logs import actors, at, classes, quality, read, states
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, seen, ticks
 
@@ -50,20 +50,14 @@ def test_without_odometry_the_bag_s_own_vehicle_is_missed(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("classes", "word"),
+    ("likely", "word"),
     [
-        ([], None),
-        ([{"label": 0, "probability": 0.9}, {"label": 1, "probability": 0.1}], None),
-        (
-            [{"label": 6, "probability": 0.3}, {"label": 7, "probability": 0.4}, {"label": 1, "probability": 0.3}],
-            "pedestrian",
-        ),
-        ([{"label": 3, "probability": 0.5}, {"label": 2, "probability": 0.5}], "bus"),
-        ([{"label": 200, "probability": 1.0}], None),
+        ({}, None), ({0: 0.9, 1: 0.1}, None), ({6: 0.3, 7: 0.4, 1: 0.3}, "pedestrian"), ({3: 0.5, 2: 0.5}, "bus"), ({200: 1.0}, None),
     ],
-)
-def test_likeliest_class(tmp_path: Path, classes: list[dict[str, Any]], word: str | None) -> None:
-    assert actors(seen(tmp_path, [*ego(), *cars(classes=classes)]))[TWO]["actor_class"] == word
+)  # fmt: skip
+def test_likeliest_class(tmp_path: Path, likely: dict[int, float], word: str | None) -> None:
+    labels = [{"label": label, "probability": probability} for label, probability in likely.items()]
+    assert classes(seen(tmp_path, [*ego(), *cars(classes=labels)]))[TWO] == word
 
 
 def test_no_orientation(tmp_path: Path) -> None:
@@ -137,8 +131,7 @@ def test_detections(tmp_path: Path) -> None:
         for t_s in ticks()
     ]
     trace = seen(tmp_path, [*ego(), *messages], ego="a")
-    rows = actors(trace)
-    assert {name: row["actor_class"] for name, row in rows.items() if name != "ego"} == {
+    assert {name: word for name, word in classes(trace).items() if name != "ego"} == {
         "a": "pedestrian",
         "long name": None,
     }
@@ -168,7 +161,5 @@ def test_old_detections(tmp_path: Path) -> None:
     messages = [
         ros.detections(t_s, {"tracking_id": "t", "bbox": box, "results": [{"id": 3, "score": 0.5}]}) for t_s in ticks()
     ]
-    from tests.formats.logs import read
-
     trace = read(ros.write(tmp_path / "old.mcap", messages, types), ego="t")
     assert (states(trace, "t")[0]["x_m"], actors(trace)["t"]["actor_class"]) == (4.0, None)

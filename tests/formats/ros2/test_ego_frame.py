@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from drivelint.errors import TraceError
-from tests.formats.logs import quality, read
+from tests.formats.logs import egos, quality, read
 from tests.formats.ros2 import autoware_log
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
@@ -33,10 +33,6 @@ def still(parent: str, child: str, x: float = 0.0, yaw: float = 0.0) -> ros.Mess
 def track(trace: Trace) -> dict[str, np.ndarray[Any, Any]]:
     rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] == "ego"]
     return {name: np.array([row[name] for row in rows], float) for name in ("t_ns", "x_m", "y_m", "yaw_rad", "vx_mps")}
-
-
-def egos(trace: Trace) -> list[str]:
-    return [row["actor_id"] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
 
 
 def test_the_ego_is_that_of_the_same_log_with_odometry(tmp_path: Path) -> None:

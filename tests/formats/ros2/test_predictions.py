@@ -10,7 +10,7 @@ import pytest
 from mcap.reader import make_reader
 
 from drivelint.errors import TraceError
-from tests.formats.logs import actors, at, quality, read, states
+from tests.formats.logs import actors, at, classes, quality, read, size, states
 from tests.formats.ros2 import autoware_log as autoware
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, ticks
@@ -60,11 +60,8 @@ def detections() -> list[ros.Message]:
 def test_predictions(tmp_path: Path) -> None:
     """Twist is along the body's own axes; the ways it may go are no states."""
     trace = seen(tmp_path, [*ego(), *predictions()])
-    rows = actors(trace)
-    assert set(rows) == {ONE, TWO, "ego"}
-    assert (rows[TWO]["actor_class"], rows[TWO]["length_m"], rows[TWO]["width_m"], rows[TWO]["height_m"]) == (
-        "car", 4.5, 1.8, 1.5,
-    )  # fmt: skip
+    assert set(actors(trace)) == {ONE, TWO, "ego"}
+    assert (classes(trace)[TWO], size(trace, TWO)) == ("car", (4.5, 1.8, 1.5))
     assert [row["x_m"] for row in states(trace, ONE)] == [60.0] * N
     state = at(trace, TWO, T0 + 1.0)
     assert (state["x_m"], state["y_m"]) == pytest.approx((25.0, 20.0 + 10.0 * math.sin(TURN)))
@@ -91,35 +88,29 @@ def test_messages_of_different_layouts(tmp_path: Path) -> None:
     ("label", "word"), [(0, None), (1, "car"), (5, "motorcycle"), (7, "pedestrian"), (9, "object"), (77, None)]
 )
 def test_the_likeliest_class(tmp_path: Path, label: int, word: str | None) -> None:
-    classes = [{"label": 2, "probability": 0.3}, {"label": label, "probability": 0.6}, {"label": 3, "probability": 0.1}]
-    assert actors(seen(tmp_path, [*ego(), *predictions(classes=classes)]))[TWO]["actor_class"] == word
+    likely = [{"label": 2, "probability": 0.3}, {"label": label, "probability": 0.6}, {"label": 3, "probability": 0.1}]
+    assert classes(seen(tmp_path, [*ego(), *predictions(classes=likely)]))[TWO] == word
 
 
 def test_a_cylinder_is_as_long_as_wide(tmp_path: Path) -> None:
     """Its dimensions are diameter and height; some writers leave the second one out."""
     shape = {"type": 1, "dimensions": ros.xyz(0.6, 0.0, 1.7)}
-    row = actors(seen(tmp_path, [*ego(), *predictions(shape=shape)]))[TWO]
-    assert (row["length_m"], row["width_m"], row["height_m"]) == (0.6, 0.6, 1.7)
+    assert size(seen(tmp_path, [*ego(), *predictions(shape=shape)]), TWO) == (0.6, 0.6, 1.7)
 
 
 def corners(*points: tuple[float, float], height: float = 2.0) -> dict[str, Any]:
-    return {
-        "type": 2,
-        "footprint": {"points": [ros.xyz(x, y) for x, y in points]},
-        "dimensions": ros.xyz(0.0, 0.0, height),
-    }
+    footprint = {"points": [ros.xyz(x, y) for x, y in points]}
+    return {"type": 2, "footprint": footprint, "dimensions": ros.xyz(0.0, 0.0, height)}
 
 
 def test_a_polygon_has_the_box_around_its_footprint(tmp_path: Path) -> None:
     """The footprint is given along the body's axes, from its pose; the box is around the footprint, not around the pose."""
     trace = seen(tmp_path, [*ego(), *predictions(shape=corners((-1.0, -0.5), (3.0, -0.5), (2.0, 1.5)))])
-    row, state = actors(trace)[TWO], at(trace, TWO, T0 + 1.0)
-    assert (row["length_m"], row["width_m"], row["height_m"]) == pytest.approx((4.0, 2.0, 2.0))
+    state, (x, y) = at(trace, TWO, T0 + 1.0), along(T0 + 1.0)
+    assert size(trace, TWO) == pytest.approx((4.0, 2.0, 2.0))
     ahead, left = 1.0, 0.5
-    x, y = 20.0 + along(T0 + 1.0)[0], 20.0 + along(T0 + 1.0)[1]
-    assert (state["x_m"], state["y_m"]) == pytest.approx(
-        (x + ahead * math.cos(TURN) - left * math.sin(TURN), y + ahead * math.sin(TURN) + left * math.cos(TURN))
-    )
+    off = ahead * math.cos(TURN) - left * math.sin(TURN), ahead * math.sin(TURN) + left * math.cos(TURN)
+    assert (state["x_m"], state["y_m"]) == pytest.approx((20.0 + x + off[0], 20.0 + y + off[1]))
     found = quality(trace)["polygon_box"]
     assert (found["severity"], found["n"]) == ("info", N)
     assert (actors(trace)[ONE]["length_m"], at(trace, ONE, T0)["x_m"]) == (4.5, 60.0)
@@ -128,8 +119,7 @@ def test_a_polygon_has_the_box_around_its_footprint(tmp_path: Path) -> None:
 @pytest.mark.parametrize("points", [(), ((1.0, 1.0),)])
 def test_a_polygon_without_an_area_has_no_size(tmp_path: Path, points: tuple[tuple[float, float], ...]) -> None:
     shape = {**corners(*points), "dimensions": ros.xyz(9.0, 9.0, 2.0)}
-    row = actors(seen(tmp_path, [*ego(), *predictions(shape=shape)]))[TWO]
-    assert (row["length_m"], row["width_m"], row["height_m"]) == (None, None, 2.0)
+    assert size(seen(tmp_path, [*ego(), *predictions(shape=shape)]), TWO) == (None, None, 2.0)
 
 
 def test_a_polygon_of_no_orientation_stays_in_place(tmp_path: Path) -> None:
@@ -164,16 +154,12 @@ def test_the_usual_topic_counts_among_several(tmp_path: Path) -> None:
     near = "/perception/object_recognition/tracking/near_objects"
     both = [*ego(), *tracks(), *tracks(near, name=7)]
     assert set(actors(seen(tmp_path, both))) == {TWO, "ego"}
-    with pytest.raises(
-        TraceError, match=r"road users on 2 topics \(/far, /perception.*near_objects\): choose with --topic"
-    ):
-        seen(tmp_path, [*ego(), *tracks("/far"), *tracks(near, name=7)])
+    two = [*ego(), *tracks("/far"), *tracks(near, name=7)]
+    said = r"road users on 2 topics \(/far, /perception.*near_objects\): choose with --topic"
+    with pytest.raises(TraceError, match=said):
+        seen(tmp_path, two)
     # a prediction is of all of them
-    assert set(actors(seen(tmp_path, [*ego(), *tracks("/far"), *tracks(near, name=7), *predictions()]))) == {
-        ONE,
-        TWO,
-        "ego",
-    }
+    assert set(actors(seen(tmp_path, [*two, *predictions()]))) == {ONE, TWO, "ego"}
 
 
 def test_two_kinds_of_perception_are_not_told_apart(tmp_path: Path) -> None:
@@ -214,18 +200,8 @@ def round_drive() -> list[ros.Message]:
     found = autoware.parameters(T0, **autoware.PARAMETERS)
     for t_s in ticks(201, 0.1):
         turn = 0.2 * (t_s - T0)
-        found.append(
-            ros.odometry(
-                t_s,
-                50.0 * math.sin(turn),
-                -50.0 * math.cos(turn),
-                turn,
-                10.0,
-                turning=0.2,
-                child="base_link",
-                topic="/odometry",
-            )
-        )
+        other: dict[str, Any] = {"turning": 0.2, "child": "base_link", "topic": "/odometry"}
+        found.append(ros.odometry(t_s, 50.0 * math.sin(turn), -50.0 * math.cos(turn), turn, 10.0, **other))
         objects = [
             autoware.prediction(
                 k, 30.0 * k + 20.0 * math.sin(turn + k), -20.0 * math.cos(turn + k), turn + k, 4.0, paths=k % 3,
@@ -246,7 +222,7 @@ def test_values_are_those_that_rosbags_reads(tmp_path: Path) -> None:
         store.register(typesys.get_types_from_msg(text.strip(), name.replace("/", "/msg/")))
     trace = seen(tmp_path, round_drive())
     ours = {(row["actor_id"], row["t_ns"]): row for row in states(trace)}
-    sizes = actors(trace)
+    sizes = {name: size(trace, name) for name in actors(trace)}
     compared = 0
     with (tmp_path / "log.mcap").open("rb") as file:
         for schema, _, record in make_reader(file).iter_messages():
@@ -261,13 +237,11 @@ def test_values_are_those_that_rosbags_reads(tmp_path: Path) -> None:
             elif schema.name.endswith("PredictedObjects"):
                 for item in message.objects:
                     name = str(uuid.UUID(bytes=bytes(item.object_id.uuid)))
-                    pose, twist = (
-                        item.kinematics.initial_pose_with_covariance.pose,
-                        item.kinematics.initial_twist_with_covariance.twist,
-                    )
-                    assert_same(ours[name, nanoseconds(message)], pose, (twist.linear.x, twist.linear.y))
-                    size = item.shape.dimensions
-                    assert [sizes[name][k] for k in ("length_m", "width_m", "height_m")] == [size.x, size.y, size.z]
+                    pose = item.kinematics.initial_pose_with_covariance.pose
+                    velocity = item.kinematics.initial_twist_with_covariance.twist.linear
+                    assert_same(ours[name, nanoseconds(message)], pose, (velocity.x, velocity.y))
+                    sides = item.shape.dimensions
+                    assert sizes[name] == (sides.x, sides.y, sides.z)
                     compared += 1
     assert compared == len(ours) == 201 * 9
 

@@ -12,7 +12,7 @@ import typer
 from drivelint.cli import app
 from drivelint.drive.trace import EgoSize
 from drivelint.errors import TraceError, UsageError
-from tests.formats.logs import actors, at, log, quality, read, states
+from tests.formats.logs import actors, at, classes, egos, log, quality, read, size, states
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
 
@@ -28,31 +28,19 @@ def info(number: int, role: str = "hero") -> ros.Message:
 def test_objects_and_odometry(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*ego(), *others()])
     assert log(trace)["format"] == "ros2-mcap"
-    rows = actors(trace)
-    assert {name: row["actor_class"] for name, row in rows.items()} == {
-        "9": "car",
-        "12": "pedestrian",
-        "ego": "vehicle",
-    }
-    assert [name for name, row in rows.items() if row["is_ego"]] == ["ego"]
-    assert (rows["9"]["length_m"], rows["9"]["width_m"], rows["9"]["height_m"]) == (4.5, 1.8, 1.5)
-    assert (rows["12"]["length_m"], rows["12"]["width_m"], rows["12"]["height_m"]) == (0.6, 0.6, 1.8)
-    assert rows["ego"]["length_m"] is None
+    assert classes(trace) == {"9": "car", "12": "pedestrian", "ego": "vehicle"}
+    assert egos(trace) == ["ego"]
+    assert (size(trace, "9"), size(trace, "12")) == ((4.5, 1.8, 1.5), (0.6, 0.6, 1.8))
+    assert actors(trace)["ego"]["length_m"] is None
     here = at(trace, "ego", T0 + 1.0)
     assert (here["x_m"], here["y_m"]) == pytest.approx((5.0, 10.0 * math.sin(TURN)))
     assert here["yaw_rad"] == pytest.approx(TURN)
+    # the twist of odometry is along the vehicle, that of objects is in the frame of the header
+    assert (here["vx_mps"], here["vy_mps"]) == pytest.approx((5.0, 10.0 * math.sin(TURN)))
+    car = at(trace, "9", T0 + 1.0)
+    assert (car["vx_mps"], car["vy_mps"]) == pytest.approx((-5.0, -10.0 * math.sin(TURN)))
     assert "velocity_mismatch" not in quality(trace)
     assert quality(trace)["reference_point"]["severity"] == "warning"
-
-
-def test_twist_of_odometry_is_the_child_frames(tmp_path: Path) -> None:
-    state = at(seen(tmp_path, [*ego(), *others()]), "ego", T0 + 1.0)
-    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((5.0, 10.0 * math.sin(TURN)))
-
-
-def test_twist_of_objects_is_the_headers_frame(tmp_path: Path) -> None:
-    state = at(seen(tmp_path, [*ego(), *others()]), "9", T0 + 1.0)
-    assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((-5.0, -10.0 * math.sin(TURN)))
 
 
 @pytest.mark.parametrize("child", ["map", ""])
@@ -94,19 +82,16 @@ def test_ego_among_the_objects_by_its_id(tmp_path: Path) -> None:
         for t_s in ticks()
     ]
     trace = seen(tmp_path, [info(7), *objects, *ego()])
-    rows = actors(trace)
-    assert {name: row["is_ego"] for name, row in rows.items()} == {"7": True, "9": False}
-    assert (rows["7"]["length_m"], len(states(trace, "7"))) == (4.5, N)
+    assert (set(actors(trace)), egos(trace)) == ({"7", "9"}, ["7"])
+    assert (actors(trace)["7"]["length_m"], len(states(trace, "7"))) == (4.5, N)
     assert quality(trace)["ego_twice"]["severity"] == "info"
 
 
 def test_ego_among_the_objects_without_being_said(tmp_path: Path) -> None:
     """Else it would drive inside another car for the whole drive."""
     objects = [ros.things(t_s, ros.thing(7, *along(t_s), TURN, 10.0), ros.thing(9, 2.0, 0.0)) for t_s in ticks()]
-    assert {name: row["is_ego"] for name, row in actors(seen(tmp_path, [*objects, *ego()])).items()} == {
-        "7": True,
-        "9": False,
-    }
+    trace = seen(tmp_path, [*objects, *ego()])
+    assert (set(actors(trace)), egos(trace)) == ({"7", "9"}, ["7"])
 
 
 def test_finer_odometry_counts(tmp_path: Path) -> None:
@@ -114,20 +99,14 @@ def test_finer_odometry_counts(tmp_path: Path) -> None:
     objects = [ros.things(t_s, ros.thing(7, *along(t_s), TURN, 10.0), ros.thing(9, 50.0, 0.0)) for t_s in ticks()]
     trace = seen(tmp_path, [info(7), *objects, *ego(0.01, 200)])
     assert len(states(trace, "7")) == 200
-    row = actors(trace)["7"]
-    assert (row["length_m"], row["width_m"], row["height_m"], row["actor_class"]) == (4.5, 1.8, 1.5, "car")
+    assert (size(trace, "7"), classes(trace)["7"]) == ((4.5, 1.8, 1.5), "car")
 
 
 def test_own_times_are_kept(tmp_path: Path) -> None:
     """Each actor keeps the time stamps of its messages, whatever the container's."""
-    messages = [*ego(0.02, 100, log_s=5000.0), *others()]
-    trace = seen(tmp_path, messages)
-    assert [row["t_ns"] for row in states(trace, "ego")][:3] == [100_000_000_000, 100_020_000_000, 100_040_000_000]
-    assert [row["t_ns"] for row in states(seen(tmp_path, others(), ego="9"))][:3] == [
-        100_000_000_000,
-        100_050_000_000,
-        100_100_000_000,
-    ]
+    own, other = seen(tmp_path, [*ego(0.02, 100, log_s=5000.0), *others()]), seen(tmp_path, others(), ego="9")
+    for rows, step_ns in ((states(own, "ego"), 20_000_000), (states(other), 50_000_000)):
+        assert [row["t_ns"] for row in rows][:3] == [100_000_000_000 + k * step_ns for k in range(3)]
 
 
 def test_egos_by_topic(tmp_path: Path) -> None:
@@ -141,8 +120,7 @@ def test_egos_by_topic(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"odometry on 2 topics \(/carla/hero/odometry, /carla/rival/odometry\)"):
         seen(tmp_path, messages)
     for topic, name in (("/carla/rival/odometry", "8"), ("/carla/hero/odometry", "7")):
-        rows = actors(seen(tmp_path, messages, topic=topic))
-        assert [key for key, row in rows.items() if row["is_ego"]] == [name]
+        assert egos(seen(tmp_path, messages, topic=topic)) == [name]
     with pytest.raises(TraceError, match="topic '/x' has no messages that can be read"):
         seen(tmp_path, messages, topic="/x")
 
@@ -150,9 +128,8 @@ def test_egos_by_topic(tmp_path: Path) -> None:
 def test_two_object_topics(tmp_path: Path) -> None:
     """Both number their objects: together, ids would collide."""
     messages = [*ego(), *others(), *others(topic="/carla/hero/objects")]
-    with pytest.raises(
-        TraceError, match=r"road users on 2 topics \(/carla/hero/objects, /carla/objects\): choose with --topic"
-    ):
+    said = r"road users on 2 topics \(/carla/hero/objects, /carla/objects\): choose with --topic"
+    with pytest.raises(TraceError, match=said):
         seen(tmp_path, messages)
     assert len(states(seen(tmp_path, messages, topic="/carla/hero/objects"), "9")) == N
 
@@ -165,10 +142,8 @@ def test_one_id_twice_in_a_message(tmp_path: Path) -> None:
 
 def test_an_object_called_ego(tmp_path: Path) -> None:
     messages = [*ego(), *[ros.detections(t_s, ros.detection("ego", 50.0, 0.0, ("car", 1.0))) for t_s in ticks()]]
-    assert {name: row["is_ego"] for name, row in actors(seen(tmp_path, messages)).items()} == {
-        "ego": False,
-        "ego_odometry": True,
-    }
+    trace = seen(tmp_path, messages)
+    assert (set(actors(trace)), egos(trace)) == ({"ego", "ego_odometry"}, ["ego_odometry"])
 
 
 def test_carlas_origins(tmp_path: Path) -> None:
@@ -199,19 +174,11 @@ def test_ego_size(tmp_path: Path) -> None:
     """The rear axle drives on a circle, the centre 1.4 m before it on a larger one, and faster."""
     rate = 0.5
     messages = [
-        ros.odometry(
-            t_s,
-            20 * math.sin(rate * (t_s - T0)),
-            -20 * math.cos(rate * (t_s - T0)),
-            rate * (t_s - T0),
-            10.0,
-            turning=rate,
-        )
-        for t_s in ticks()
+        ros.odometry(t_s, 20 * math.sin(yaw), -20 * math.cos(yaw), yaw, 10.0, turning=rate)
+        for t_s, yaw in ((t_s, rate * (t_s - T0)) for t_s in ticks())
     ]
     trace = seen(tmp_path, messages, ego_size=EgoSize(4.9, 1.9, 1.4))
-    row = actors(trace)["ego"]
-    assert (row["length_m"], row["width_m"]) == (4.9, 1.9)
+    assert size(trace)[:2] == (4.9, 1.9)
     state = at(trace, "ego", T0 + 1.0)
     assert math.hypot(state["x_m"], state["y_m"]) == pytest.approx(math.hypot(20, 1.4))
     assert math.hypot(state["vx_mps"], state["vy_mps"]) == pytest.approx(rate * math.hypot(20, 1.4))
@@ -237,7 +204,7 @@ def test_ego_size_reaches_the_log(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:
     trace = seen(tmp_path, others(), ego="9", ego_size=EgoSize(4.9, 1.82))
-    assert (actors(trace)["9"]["length_m"], actors(trace)["9"]["width_m"]) == (4.5, 1.8)
+    assert size(trace, "9")[:2] == (4.5, 1.8)
     assert "length of 4.9 m, but the log states 4.5 m" in quality(trace)["ego_size"]["message"]
     assert "assumed_size" not in quality(trace)
 

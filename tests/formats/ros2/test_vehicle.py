@@ -10,7 +10,8 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from drivelint.drive.trace import EgoSize
-from tests.formats.logs import actors, at, quality, read, states
+from tests.formats.logs import at, quality, read, size, states
+from tests.formats.logs import messages as told
 from tests.formats.ros2 import autoware_log as autoware
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, ego, ticks
@@ -28,11 +29,6 @@ def seen(folder: Path, messages: list[ros.Message], **options: Any) -> Trace:
     return read(autoware.write(folder / "log.mcap", messages), **options)
 
 
-def size(trace: Trace) -> tuple[float | None, ...]:
-    row = actors(trace)["ego"]
-    return row["length_m"], row["width_m"], row["height_m"]
-
-
 def axle(**other: Any) -> list[ros.Message]:
     """Return the odometry of the rear axle."""
     return ego(child="base_link", **other)
@@ -47,9 +43,8 @@ def test_size_and_centre(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*axle(), *parameters()])
     assert size(trace) == SIZE
     state = at(trace, "ego", T0)
-    assert (state["x_m"], state["y_m"], state["z_m"]) == pytest.approx(
-        (AHEAD * math.cos(TURN), AHEAD * math.sin(TURN), 1.25)
-    )
+    place = AHEAD * math.cos(TURN), AHEAD * math.sin(TURN), 1.25
+    assert (state["x_m"], state["y_m"], state["z_m"]) == pytest.approx(place)
     assert "reference_point" not in quality(trace)
     assert trace.notes[0] == ("the ego's box is taken from /a: 4.89 m by 1.90 m, its centre 1.34 m ahead of base_link")
 
@@ -65,20 +60,17 @@ def test_a_vehicle_with_a_side_that_sticks_out(tmp_path: Path) -> None:
     assert size(trace) == pytest.approx((4.89, 2.296, 2.5))
     assert trace.notes[0].endswith("ahead of base_link and 0.20 m to the left")
     state = at(trace, "ego", T0)
-    assert (state["x_m"], state["y_m"]) == pytest.approx(
-        (AHEAD * math.cos(TURN) - 0.2 * math.sin(TURN), AHEAD * math.sin(TURN) + 0.2 * math.cos(TURN))
-    )
+    place = AHEAD * math.cos(TURN) - 0.2 * math.sin(TURN), AHEAD * math.sin(TURN) + 0.2 * math.cos(TURN)
+    assert (state["x_m"], state["y_m"]) == pytest.approx(place)
 
 
 @pytest.mark.parametrize("child", ["base_link", "robot/base_link", "/base_link"])
 def test_the_centre_swings_when_the_vehicle_turns(tmp_path: Path, child: str) -> None:
     """On a circle of 25 m at 0.4 rad/s: the centre's velocity is that of its own places."""
+    other: dict[str, Any] = {"turning": 0.4, "child": child, "topic": "/odometry"}
     messages = [
-        ros.odometry(
-            t_s, 25.0 * math.sin(turn), -25.0 * math.cos(turn), turn, 10.0, turning=0.4, child=child, topic="/odometry"
-        )
-        for t_s in ticks(81)
-        if (turn := 0.4 * (t_s - T0)) is not None
+        ros.odometry(t_s, 25.0 * math.sin(turn), -25.0 * math.cos(turn), turn, 10.0, **other)
+        for t_s, turn in ((t_s, 0.4 * (t_s - T0)) for t_s in ticks(81))
     ]
     trace = seen(tmp_path, [*messages, *parameters(left_overhang=0.528)])
     rows = states(trace, "ego")
@@ -124,9 +116,8 @@ def test_without_a_height_the_place_is_the_axles(tmp_path: Path) -> None:
 
 def test_whole_numbers(tmp_path: Path) -> None:
     messages = parameters(wheel_base=3.0)
-    value = next(of["new_parameters"][0] for *_, of in messages if of["new_parameters"][0]["name"] == "wheel_base")[
-        "value"
-    ]
+    said = (of["new_parameters"][0] for *_, of in messages)
+    value = next(each["value"] for each in said if each["name"] == "wheel_base")
     value.update(type=2, integer_value=3, double_value=0.0)
     assert size(seen(tmp_path, [*axle(), *messages]))[0] == pytest.approx(5.1)
     value.update(type=4, string_value="3")
@@ -152,16 +143,16 @@ def test_another_frame_than_the_axles(tmp_path: Path) -> None:
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == 0.0
     assert quality(trace)["reference_point"]["severity"] == "warning"
-    told = seen(tmp_path, [*ego(child="imu"), *parameters()], ego_size=EgoSize(4.89, 1.9, 2.0))
-    assert at(told, "ego", T0)["x_m"] == pytest.approx(2.0 * math.cos(TURN))
-    assert "reference_point" not in quality(told)
+    given = seen(tmp_path, [*ego(child="imu"), *parameters()], ego_size=EgoSize(4.89, 1.9, 2.0))
+    assert at(given, "ego", T0)["x_m"] == pytest.approx(2.0 * math.cos(TURN))
+    assert "reference_point" not in quality(given)
 
 
 def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*axle(), *parameters()], ego_size=EgoSize(3.0, 1.9, 0.7))
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
-    assert [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "ego_size"] == [
+    assert told(trace, "ego_size") == [
         "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, but the log states 1.345 m: the value of the log is used",
         "--ego-size gives ego a length of 3 m, but the log states 4.89 m: the value of the log is used",
     ]

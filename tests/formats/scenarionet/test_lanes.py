@@ -12,9 +12,11 @@ import pytest
 from drivelint.errors import MapError
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
+from tests.formats.maps import hand, lanelet, lanelets, links, messages, rows, values
 from tests.formats.scenarionet.scenario_file import boundary, lane, light, line, scenario, straight, track
 
 EAST = np.column_stack([np.arange(0.0, 101.0, 10.0), np.zeros(11)])
+EGO = {"ego": track(straight(3, 1.0))}
 
 
 def shifted(points: Any, x: float = 0.0, y: float = 0.0) -> np.ndarray:
@@ -26,25 +28,17 @@ def load(
     features: dict[str, Any], *, dataset: str = "waymo", lights: dict[str, Any] | None = None, **options: Any
 ) -> MapTables:
     place = options.pop("place", "")
-    content = scenario({"ego": track(straight(3, 1.0))}, dataset=dataset, features=features, lights=lights, map=place)
+    content = scenario(EGO, dataset=dataset, features=features, lights=lights, map=place)
     return load_map(MapSource("sd_made_1.pkl", pickle.dumps(content, 4)), **options)
 
 
-def rows(found: MapTables, table: str) -> list[dict[str, Any]]:
-    return [{k: v for k, v in row.items() if k != "environment_id"} for row in found.tables[table].to_pylist()]
-
-
-def lanelets(found: MapTables) -> dict[str, dict[str, Any]]:
-    return {row["lanelet_id"]: row for row in rows(found, "lanelet")}
-
-
-def points(found: MapTables, name: str) -> dict[str, np.ndarray]:
-    mine = [row for row in rows(found, "lane_point") if row["lanelet_id"] == name]
+def columns(found: MapTables, name: str) -> dict[str, np.ndarray]:
+    mine = rows(found, "lane_point", lanelet_id=name)
     return {key: np.array([row[key] for row in mine], np.float64) for key in mine[0] if key != "lanelet_id"}
 
 
-def checks(found: MapTables, check: str) -> list[str]:
-    return [row["message"] for row in rows(found, "map_quality") if row["check_id"] == check]
+def around(x0: float, x1: float, y0: float = -2, y1: float = 2) -> list[list[float]]:
+    return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 
 
 def bounded(y: float = 0.0, half: float = 1.75, kind: str = "LANE_SURFACE_STREET", **more: Any) -> dict[str, Any]:
@@ -58,7 +52,7 @@ def bounded(y: float = 0.0, half: float = 1.75, kind: str = "LANE_SURFACE_STREET
 
 def test_the_outline_of_a_lane_gives_its_bounds() -> None:
     found = load({"a": bounded(half=1.6)}, dataset="nuscenes", place="boston-seaport")
-    a = points(found, "a")
+    a = columns(found, "a")
     assert a["half_width_m"] == pytest.approx(np.full(len(a["k"]), 1.6), abs=1e-5)
     assert a["left_y_m"] == pytest.approx(1.6, abs=1e-5)
     assert a["right_y_m"] == pytest.approx(-1.6, abs=1e-5)
@@ -70,7 +64,7 @@ def test_the_outline_of_a_lane_gives_its_bounds() -> None:
 def test_an_outline_that_widens_and_is_cut_aslant() -> None:
     outline = [[-3.0, -1.5], [101.5, -1.5], [99.0, 3.0], [-1.0, 1.5]]
     found = load({"a": lane(EAST, polygon=outline)}, dataset="nuplan", place="us-ma-boston")
-    a = points(found, "a")
+    a = columns(found, "a")
     assert a["left_y_m"] == pytest.approx(1.5 + 1.5 * (a["left_x_m"] + 1.0) / 100.0, abs=0.1)
     assert a["right_y_m"] == pytest.approx(-1.5, abs=1e-5)
 
@@ -83,10 +77,10 @@ def test_the_lines_that_a_lane_refers_to_give_its_bounds() -> None:
         "r": line(shifted(EAST, y=-1.6), "ROAD_EDGE_BOUNDARY"),
     }
     found = load(features)
-    a = points(found, "a")
+    a = columns(found, "a")
     assert a["left_y_m"] == pytest.approx(1.8, abs=1e-5)
     assert a["right_y_m"] == pytest.approx(-1.6, abs=1e-5)
-    (message,) = checks(found, "assumed_width")
+    (message,) = messages(found, "assumed_width")
     assert re.match(r"along (29|30)% of the lanes' sides \(1 of 1 lanes\) the edge of the lane is not known", message)
 
 
@@ -97,9 +91,9 @@ def test_a_far_edge_is_no_bound() -> None:
         "l": line(shifted(EAST, y=1.75)),
         "r": line(shifted(EAST, y=-3.6), "ROAD_EDGE_BOUNDARY"),
     }
-    assert points(load(features), "a")["right_y_m"] == pytest.approx(-2.35, abs=1e-5)
+    assert columns(load(features), "a")["right_y_m"] == pytest.approx(-2.35, abs=1e-5)
     features["r"] = line(shifted(EAST, y=-9.0), "ROAD_EDGE_BOUNDARY")
-    assert points(load(features), "a")["right_y_m"] == pytest.approx(-1.75, abs=1e-5)
+    assert columns(load(features), "a")["right_y_m"] == pytest.approx(-1.75, abs=1e-5)
 
 
 def test_lines_beside_a_lane_count_where_no_lane_refers_to_any() -> None:
@@ -111,7 +105,7 @@ def test_lines_beside_a_lane_count_where_no_lane_refers_to_any() -> None:
         "r": line(shifted(EAST, y=-1.9), "ROAD_EDGE_MEDIAN"),
         "within": line(shifted(EAST, y=0.3)),
     }
-    a = points(load(features), "a")
+    a = columns(load(features), "a")
     assert (a["left_y_m"][0], a["right_y_m"][0]) == pytest.approx((1.7, -1.9), abs=1e-5)
 
 
@@ -119,7 +113,7 @@ def test_the_middle_between_two_lanes_is_a_bound() -> None:
     west = shifted(EAST, y=3.6)[::-1]
     features = {"a": lane(EAST), "b": lane(west), "e": line(shifted(EAST, y=-1.7), "ROAD_EDGE_BOUNDARY")}
     found = load(features)
-    assert points(found, "a")["left_y_m"] == pytest.approx(1.8, abs=1e-5)
+    assert columns(found, "a")["left_y_m"] == pytest.approx(1.8, abs=1e-5)
     assert lanelets(found)["a"]["left_id"] == "b"
     assert lanelets(found)["a"]["left_against"] is True
     assert found.handedness == "rht"
@@ -131,20 +125,20 @@ def test_a_lane_without_bounds_is_as_wide_as_what_it_joins() -> None:
     features = {
         "a": bounded(half=1.5),
         "between": lane([[100.0, 0.0], [110.0, 0.0], [120.0, 0.0]], speed_limit_kmh=100),
-        "b": lane(wide, polygon=[[119.0, -2.0], [221.0, -2.0], [221.0, 2.0], [119.0, 2.0]]),
+        "b": lane(wide, polygon=around(119, 221)),
     }
     found = load(features, dataset="nuscenes")
-    between = points(found, "between")
+    between = columns(found, "between")
     assert between["half_width_m"] == pytest.approx(1.5 + 0.5 * (between["x_m"] - 100.0) / 20.0, abs=1e-4)
-    assert [(row["from_id"], row["to_id"]) for row in rows(found, "lane_link")] == [("a", "between"), ("between", "b")]
-    assert len(checks(found, "assumed_width")) == 1
+    assert links(found) == [("a", "between"), ("between", "b")]
+    assert len(messages(found, "assumed_width")) == 1
     assert rows(found, "speed_limit") == []  # it is a constant of ScenarioNet
 
 
 def test_a_lane_of_which_nobody_gives_the_width_is_left_out() -> None:
     found = load({"a": bounded(), "alone": lane(shifted(EAST, y=50.0))})
     assert set(lanelets(found)) == {"a"}
-    assert checks(found, "invalid_lane") == [
+    assert messages(found, "invalid_lane") == [
         "lane alone is left out: neither it nor the lanes that it joins have bounds, so its width is unknown"
     ]
 
@@ -155,7 +149,7 @@ def test_a_lane_of_which_nobody_gives_the_width_is_left_out() -> None:
 def test_a_lane_without_a_line_is_left_out(polyline: Any) -> None:
     found = load({"a": bounded(), "bad": {"type": "LANE_FREEWAY", "polyline": polyline}})
     assert set(lanelets(found)) == {"a"}
-    (message,) = checks(found, "invalid_lane")
+    (message,) = messages(found, "invalid_lane")
     assert message.startswith("lane bad is left out: ")
 
 
@@ -174,36 +168,29 @@ def test_a_lane_without_a_line_is_left_out(polyline: Any) -> None:
 )
 def test_kinds_of_lanes(kind: str, lane_type: str, drivable: bool, road_type: str | None) -> None:
     found = load({"a": bounded(y=20.0), "b": bounded(kind=kind)})
-    row = lanelets(found)["b"]
-    assert (row["lane_type"], row["drivable"], row["road_type"]) == (lane_type, drivable, road_type)
+    assert lanelet(found, "b", "lane_type drivable road_type") == (lane_type, drivable, road_type)
 
 
 def test_links_that_the_scenario_gives() -> None:
     """Ids are numbers in Waymo's lanes; entry and exit lanes say the same, and one of them is enough."""
     features = {
         "1": bounded(exit_lanes=[2], entry_lanes=[]),
-        "2": lane(
-            shifted(EAST, x=100.0), polygon=[[99, -2], [201, -2], [201, 2], [99, 2]], exit_lanes=[], entry_lanes=[1]
-        ),
-        "3": lane(
-            shifted(EAST, x=200.0), polygon=[[199, -2], [301, -2], [301, 2], [199, 2]], exit_lanes=[99], entry_lanes=[2]
-        ),
+        "2": lane(shifted(EAST, x=100.0), polygon=around(99, 201), exit_lanes=[], entry_lanes=[1]),
+        "3": lane(shifted(EAST, x=200.0), polygon=around(199, 301), exit_lanes=[99], entry_lanes=[2]),
     }
     found = load(features)
-    assert [(row["from_id"], row["to_id"]) for row in rows(found, "lane_link")] == [("1", "2"), ("2", "3")]
-    assert checks(found, "missing_link") == ["lanelet 3 leads to 99, which the map does not contain"]
+    assert links(found) == [("1", "2"), ("2", "3")]
+    assert messages(found, "missing_link") == ["lanelet 3 leads to 99, which the map does not contain"]
 
 
 def test_lanes_that_meet_at_their_ends_are_linked_but_not_backwards() -> None:
     features = {
         "a": bounded(),
-        "on": lane(shifted(EAST, x=100.1), polygon=[[99, -2], [201, -2], [201, 2], [99, 2]]),
-        "back": lane(shifted(EAST, y=0.0)[::-1], polygon=[[-1, -2], [101, -2], [101, 2], [-1, 2]]),
-        "apart": lane(shifted(EAST, x=101.0), polygon=[[100, -2], [202, -2], [202, 2], [100, 2]]),
+        "on": lane(shifted(EAST, x=100.1), polygon=around(99, 201)),
+        "back": lane(shifted(EAST, y=0.0)[::-1], polygon=around(-1, 101)),
+        "apart": lane(shifted(EAST, x=101.0), polygon=around(100, 202)),
     }
-    assert [(row["from_id"], row["to_id"]) for row in rows(load(features, dataset="nuplan"), "lane_link")] == [
-        ("a", "on")
-    ]
+    assert links(load(features, dataset="nuplan")) == [("a", "on")]
 
 
 def test_neighbours() -> None:
@@ -211,16 +198,13 @@ def test_neighbours() -> None:
     features = {
         "1": bounded(y=0.0),
         "2": bounded(y=3.5),
-        "3": lane(shifted(EAST, y=7.0)[::-1], polygon=[[-1, 5.25], [101, 5.25], [101, 8.75], [-1, 8.75]]),
+        "3": lane(shifted(EAST, y=7.0)[::-1], polygon=around(-1, 101, 5.25, 8.75)),
     }
-    found = lanelets(load(features, dataset="nuplan", place="us-pa-pittsburgh"))
-    assert [(found[i]["left_id"], found[i]["left_against"]) for i in "123"] == [("2", False), ("3", True), ("2", True)]
-    assert [(found[i]["right_id"], found[i]["right_against"]) for i in "123"] == [
-        (None, None),
-        ("1", False),
-        (None, None),
-    ]
-    assert len({found[i]["road_id"] for i in "123"}) == 1
+    found = load(features, dataset="nuplan", place="us-pa-pittsburgh")
+    assert sorted(values(found, "lanelet", "lanelet_id left_id left_against right_id right_against")) == [
+        ("1", "2", False, None, None), ("2", "3", True, "1", False), ("3", "2", True, None, None),
+    ]  # fmt: skip
+    assert len(set(values(found, "lanelet", "road_id"))) == 1
 
 
 def waymo_lane(line_points: Any, z: float, **more: Any) -> dict[str, Any]:
@@ -232,11 +216,10 @@ def waymo_lane(line_points: Any, z: float, **more: Any) -> dict[str, Any]:
 def test_lanes_that_lie_across_each_other_are_a_junction(height: float, crosses: bool) -> None:
     north = np.column_stack([np.full(5, 50.0), np.linspace(-15.0, 15.0, 5)])
     features = {
-        "a": waymo_lane(np.linspace((35.0, 0.0), (65.0, 0.0), 4), 0.0, polygon=[[34, -2], [66, -2], [66, 2], [34, 2]]),
-        "b": waymo_lane(north, height, polygon=[[48, -16], [52, -16], [52, 16], [48, 16]]),
+        "a": waymo_lane(np.linspace((35.0, 0.0), (65.0, 0.0), 4), 0.0, polygon=around(34, 66)),
+        "b": waymo_lane(north, height, polygon=around(48, 52, -16, 16)),
     }
-    found = lanelets(load(features))
-    assert [found[i]["junction_id"] for i in "ab"] == (["ja", "ja"] if crosses else [None, None])
+    assert values(load(features), "lanelet", "junction_id") == (["ja", "ja"] if crosses else [None, None])
 
 
 @pytest.mark.parametrize(("x", "y", "is_junction"), [(40.0, 3.5, False), (12.0, -12.0, True)])
@@ -244,24 +227,23 @@ def test_a_split_is_no_junction_and_a_turning_off_is_one(x: float, y: float, is_
     """Two lanes begin together: the other stays beside the one, or leads elsewhere."""
     t = np.linspace(0.0, 1.0, 11)
     across = t if is_junction else np.sin(t * np.pi / 2)
-    middle = np.column_stack(
-        [x * (np.sin(t * np.pi / 2) if is_junction else t), y * (1.0 - np.cos(across * np.pi / 2))]
-    )
+    along = np.sin(t * np.pi / 2) if is_junction else t
+    middle = np.column_stack([x * along, y * (1.0 - np.cos(across * np.pi / 2))])
     way = np.gradient(middle, axis=0)
     side = 1.7 * np.column_stack([-way[:, 1], way[:, 0]]) / np.hypot(*way.T)[:, None]
     features = {
-        "on": lane(np.column_stack([40.0 * t, 0.0 * t]), polygon=[[-1, -1.7], [41, -1.7], [41, 1.7], [-1, 1.7]]),
+        "on": lane(np.column_stack([40.0 * t, 0.0 * t]), polygon=around(-1, 41, -1.7, 1.7)),
         "off": lane(middle, polygon=np.vstack([middle + side, (middle - side)[::-1]])),
     }
-    found = lanelets(load(features, dataset="nuplan"))
-    assert [found[i]["junction_id"] for i in ("on", "off")] == ["joff" if is_junction else None] * 2
+    found = load(features, dataset="nuplan")
+    assert values(found, "lanelet", "junction_id") == ["joff" if is_junction else None] * 2
 
 
 def test_heights_are_those_of_the_lines_but_not_where_the_third_number_is_another() -> None:
     """nuScenes gives headings there."""
     feature = {"a": waymo_lane(EAST, -24.0, polygon=bounded()["polygon"])}
-    assert points(load(feature), "a")["z_m"] == pytest.approx(-24.0)
-    assert np.isnan(points(load(feature, dataset="nuscenes"), "a")["z_m"]).all()
+    assert columns(load(feature), "a")["z_m"] == pytest.approx(-24.0)
+    assert np.isnan(columns(load(feature, dataset="nuscenes"), "a")["z_m"]).all()
 
 
 # ---- markings and limits
@@ -289,9 +271,8 @@ def test_markings(kind: str, marking: str | None) -> None:
         "l": line(shifted(EAST, y=1.8), kind),
         "r": line(shifted(EAST, y=-1.8), "ROAD_LINE_SOLID_SINGLE_WHITE"),
     }
-    found = rows(load(features), "lane_boundary")
-    assert [(row["side"], row["marking"]) for row in found] == [("left", marking), ("right", "solid")]
-    assert [(row["s_start_m"], row["s_end_m"]) for row in found] == [(0.0, 100.0)] * 2
+    found = values(load(features), "lane_boundary", "side marking s_start_m s_end_m")
+    assert found == [("left", marking, 0.0, 100.0), ("right", "solid", 0.0, 100.0)]
 
 
 def test_a_marking_that_changes_along_the_lane() -> None:
@@ -300,14 +281,9 @@ def test_a_marking_that_changes_along_the_lane() -> None:
         "l1": line(shifted(EAST, y=1.8), "ROAD_LINE_SOLID_SINGLE_WHITE"),
         "l2": line(shifted(EAST, y=1.8), "ROAD_LINE_BROKEN_SINGLE_WHITE"),
     }
-    found = [
-        (row["side"], row["marking"], row["s_start_m"], row["s_end_m"]) for row in rows(load(features), "lane_boundary")
-    ]
-    assert found == [
-        ("left", "solid", 0.0, pytest.approx(40.0)),
-        ("left", "broken", pytest.approx(40.0), 100.0),
-        ("right", None, 0.0, 100.0),
-    ]
+    assert values(load(features), "lane_boundary", "side marking s_start_m s_end_m") == [
+        ("left", "solid", 0.0, 40.0), ("left", "broken", 40.0, 100.0), ("right", None, 0.0, 100.0),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("dataset", ["nuscenes", "nuplan"])
@@ -316,7 +292,7 @@ def test_markings_that_are_constants_of_the_converter_are_unknown(dataset: str) 
         "a": lane(EAST, polygon=bounded()["polygon"], left_boundaries=[boundary("l", 10)]),
         "l": line(shifted(EAST, y=1.75), "ROAD_LINE_SOLID_SINGLE_WHITE"),
     }
-    assert [row["marking"] for row in rows(load(features, dataset=dataset), "lane_boundary")] == [None, None]
+    assert values(load(features, dataset=dataset), "lane_boundary", "marking") == [None, None]
 
 
 @pytest.mark.parametrize(
@@ -332,10 +308,8 @@ def test_markings_that_are_constants_of_the_converter_are_unknown(dataset: str) 
     ],
 )
 def test_speed_limits(dataset: str, more: dict[str, Any], limit: float | None) -> None:
-    found = rows(load({"a": bounded(**more)}, dataset=dataset), "speed_limit")
-    assert [(row["limit_mps"], row["source"]) for row in found] == (
-        [] if limit is None else [(pytest.approx(limit), "lane")]
-    )
+    found = values(load({"a": bounded(**more)}, dataset=dataset), "speed_limit", "limit_mps source")
+    assert found == ([] if limit is None else [(pytest.approx(limit, abs=1e-6), "lane")])
 
 
 # ---- sides
@@ -354,13 +328,13 @@ def test_speed_limits(dataset: str, more: dict[str, Any], limit: float | None) -
 )
 def test_the_place_tells_the_side_that_is_driven_on(dataset: str, place: str, side: str) -> None:
     found = load({"a": bounded()}, dataset=dataset, place=place)
-    assert (found.handedness, found.handedness_source) == (side, "attribute")
+    assert hand(found) == (side, "attribute")
 
 
 def test_without_a_place_the_lanes_tell_the_side() -> None:
-    west = lane(shifted(EAST, y=-3.5)[::-1], polygon=[[-1, -5.25], [101, -5.25], [101, -1.75], [-1, -1.75]])
+    west = lane(shifted(EAST, y=-3.5)[::-1], polygon=around(-1, 101, -5.25, -1.75))
     found = load({"a": bounded(), "b": west}, dataset="mine")
-    assert (found.handedness, found.handedness_source) == ("lht", "lanes")
+    assert hand(found) == ("lht", "lanes")
     assert load({"a": bounded()}, dataset="mine").handedness_source == "default"
     assert load({"a": bounded(), "b": west}, dataset="mine", handedness="rht").handedness_source == "option"
 
@@ -374,24 +348,17 @@ def test_lights_stand_at_their_stop_points_on_the_lanes_that_they_hold_for() -> 
         "gone": light(["LANE_STATE_GO"] * 3, 99, (40.0, 0.3, 0.0)),
     }
     found = load({"1": bounded()}, lights=lights)
-    (row,) = rows(found, "traffic_signal")
-    assert (row["signal_id"], row["lanelet_id"], row["kind"], row["dynamic"], row["turns"]) == (
-        "1",
-        "1",
-        "traffic_light",
-        True,
-        None,
-    )
-    assert (row["lane_s_m"], row["x_m"], row["y_m"]) == pytest.approx((40.0, 40.0, 0.3))
-    assert checks(found, "signal_without_lane") == [
-        "lights that apply to no lane of the map, or have no position: gone"
+    assert values(found, "traffic_signal", "signal_id lanelet_id kind dynamic turns lane_s_m x_m y_m") == [
+        ("1", "1", "traffic_light", True, None, 40.0, 40.0, 0.3)
     ]
+    message = "lights that apply to no lane of the map, or have no position: gone"
+    assert messages(found, "signal_without_lane") == [message]
 
 
 def test_the_lights_of_nuplan_hold_from_the_begin_of_the_lane() -> None:
     lights = {"1": light(["TRAFFIC_LIGHT_RED"] * 3, "1", (8.0, 0.0, 0.0))}
-    (row,) = rows(load({"1": bounded()}, dataset="nuplan", lights=lights), "traffic_signal")
-    assert (row["lane_s_m"], row["x_m"]) == pytest.approx((0.0, 0.0))
+    found = load({"1": bounded()}, dataset="nuplan", lights=lights)
+    assert values(found, "traffic_signal", "lane_s_m x_m") == [(0.0, 0.0)]
 
 
 def test_stop_signs() -> None:
@@ -403,13 +370,11 @@ def test_stop_signs() -> None:
         "none": {"type": "STOP_SIGN", "lane": [], "position": np.array([90.0, 0.0, 1.0], np.float32)},
     }
     found = load(features)
-    assert [(row["signal_id"], row["lanelet_id"], row["kind"], row["dynamic"]) for row in rows(found, "traffic_signal")] == [
-        ("s", "1", "stop", False), ("s", "2", "stop", False),
+    assert values(found, "traffic_signal", "signal_id lanelet_id kind dynamic lane_s_m") == [
+        ("s", "1", "stop", False, 90.0), ("s", "2", "stop", False, 90.0),
     ]  # fmt: skip
-    assert [row["lane_s_m"] for row in rows(found, "traffic_signal")] == pytest.approx([90.0, 90.0])
-    assert checks(found, "signal_without_lane") == [
-        "stop signs that apply to no lane of the map, or have no position: far, none"
-    ]
+    message = "stop signs that apply to no lane of the map, or have no position: far, none"
+    assert messages(found, "signal_without_lane") == [message]
 
 
 def test_crossings() -> None:
@@ -423,13 +388,11 @@ def test_crossings() -> None:
         "bad": {"type": "CROSSWALK", "polygon": outline[:2]},
     }
     found = load(features)
-    assert [(row["crossing_id"], row["lanelet_id"], row["kind"]) for row in rows(found, "crossing")] == [
-        ("c", "1", None),
-        ("c", "2", None),
-    ]
-    assert [(row["s_start_m"], row["s_end_m"]) for row in rows(found, "crossing")] == [pytest.approx((50.0, 54.0))] * 2
-    assert checks(found, "object_without_lane") == ["crossing beside lies across no lane that vehicles drive on"]
-    assert checks(found, "invalid_lane") == ["crossing bad is left out: it has no outline"]
+    assert values(found, "crossing", "crossing_id lanelet_id kind s_start_m s_end_m") == [
+        ("c", "1", None, 50.0, 54.0), ("c", "2", None, 50.0, 54.0),
+    ]  # fmt: skip
+    assert messages(found, "object_without_lane") == ["crossing beside lies across no lane that vehicles drive on"]
+    assert messages(found, "invalid_lane") == ["crossing bad is left out: it has no outline"]
 
 
 def test_what_else_stands_there_is_not_in_the_way() -> None:
@@ -445,14 +408,10 @@ def test_an_offset_moves_everything() -> None:
     features = {"1": bounded(), "s": {"type": "STOP_SIGN", "lane": [1], "position": np.array([90.0, -4.0, 1.0])}}
     lights = {"1": light(["LANE_STATE_GO"] * 3, 1, (40.0, 0.3, 0.0))}
     here, there = load(features, lights=lights), load(features, lights=lights, offset=(1000.0, -500.0))
-    for table, x, y in (
-        ("lane_point", "x_m", "y_m"),
-        ("lane_point", "left_x_m", "left_y_m"),
-        ("traffic_signal", "x_m", "y_m"),
-    ):
-        moved = [(b[x] - a[x], b[y] - a[y]) for a, b in zip(rows(here, table), rows(there, table), strict=True)]
-        assert np.array(moved) == pytest.approx(np.tile([1000.0, -500.0], (len(moved), 1)), abs=1e-3)
-    assert [row["lane_s_m"] for row in rows(there, "traffic_signal")] == pytest.approx([40.0, 90.0])
+    for table, names in (("lane_point", "x_m y_m"), ("lane_point", "left_x_m left_y_m"), ("traffic_signal", "x_m y_m")):
+        moved = np.array(values(there, table, names)) - np.array(values(here, table, names))
+        assert moved == pytest.approx(np.tile([1000.0, -500.0], (len(moved), 1)), abs=1e-3)
+    assert values(there, "traffic_signal", "lane_s_m") == [40.0, 90.0]
 
 
 # ---- what is no map
@@ -463,14 +422,8 @@ def test_an_offset_moves_everything() -> None:
     [
         (b"\x80\x04}\x94.", "is not a scenario of ScenarioNet"),
         (b"\x80\x04\x95", "cut off or damaged"),
-        (
-            pickle.dumps(scenario({"ego": track(straight(3, 1.0))}), 4),
-            "has no lane for driving that can be built: it has none: give --map",
-        ),
-        (
-            pickle.dumps(scenario({"ego": track(straight(3, 1.0))}, features={"1": lane(EAST)}), 4),
-            "its width is unknown: give --map",
-        ),
+        (pickle.dumps(scenario(EGO), 4), "has no lane for driving that can be built: it has none: give --map"),
+        (pickle.dumps(scenario(EGO, features={"1": lane(EAST)}), 4), "its width is unknown: give --map"),
     ],
 )
 def test_what_is_no_map(content: bytes, says: str) -> None:

@@ -17,7 +17,9 @@ import shapely
 from drivelint.drive.trace import Trace
 from drivelint.formats import load_map, read_source
 from drivelint.formats.scenarionet.ego_clock import track_at_steps
-from tests.formats.logs import actors, log, read
+from drivelint.road.map_reader import MapTables
+from tests.formats.logs import classes, egos, log, read, size
+from tests.formats.maps import checks, hand, lanelets, values
 from tests.shared_data import shared
 
 pytestmark = pytest.mark.ci
@@ -45,6 +47,10 @@ def second(name: str) -> dict[str, Any]:
 
 def first(name: str) -> Trace:
     return read(shared(f"{FOLDER}/{name}.pkl"))
+
+
+def on_map(name: str) -> MapTables:
+    return load_map(read_source(shared(f"{FOLDER}/{name}.pkl")))
 
 
 def columns(trace: Trace) -> dict[str, dict[str, np.ndarray]]:
@@ -110,19 +116,11 @@ def test_the_ego_of_nuscenes_leaps_no_more(name: str, lost: int, shift_s: float,
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_egos_and_classes(name: str) -> None:
     trace = first(name)
-    found = actors(trace)
-    (ego,) = (row for row in found.values() if row["is_ego"])
-    if name in NUSCENES:
-        assert (ego["length_m"], ego["width_m"], ego["actor_class"]) == (4.08, 1.73, "car")
-        assert {row["actor_class"] for row in found.values()} >= {"car", "bus"}
-        assert log(trace)["sensor_range_m"] == 40.0
-    else:
-        assert (ego["length_m"], ego["width_m"], ego["actor_class"]) == (
-            pytest.approx(5.286),
-            pytest.approx(2.332),
-            "vehicle",
-        )
-        assert log(trace)["sensor_range_m"] == 75.0
+    (ego,) = egos(trace)
+    sides, word, reach = ((4.08, 1.73), "car", 40.0) if name in NUSCENES else ((5.286, 2.332), "vehicle", 75.0)
+    assert size(trace, ego)[:2] == pytest.approx(sides)
+    assert (classes(trace)[ego], log(trace)["sensor_range_m"]) == (word, reach)
+    assert set(classes(trace).values()) >= ({"car", "bus"} if name in NUSCENES else set())
     assert trace.embedded_map is not None
 
 
@@ -135,11 +133,8 @@ def test_the_last_velocity_is_that_of_the_motion(name: str) -> None:
         state = told["tracks"][actor]["state"]
         last = np.flatnonzero(np.asarray(state["valid"]).ravel() > 0)[-1]
         assert (state["velocity"][last] == 0.0).all()
-        way = (
-            np.hypot(mine["x_m"][-1] - mine["x_m"][-2], mine["y_m"][-1] - mine["y_m"][-2])
-            if len(mine["x_m"]) > 1
-            else 0.0
-        )
+        x, y = mine["x_m"], mine["y_m"]
+        way = np.hypot(x[-1] - x[-2], y[-1] - y[-2]) if len(x) > 1 else 0.0
         if way > 0.2 and np.isfinite(mine["vx_mps"][-1]):
             assert np.hypot(mine["vx_mps"][-1], mine["vy_mps"][-1]) == pytest.approx(way / 0.1, abs=0.15 * way / 0.1)
             n += 1
@@ -150,25 +145,17 @@ def test_the_lights_of_waymo() -> None:
     told, trace = second(WAYMO), first(WAYMO)
     rows = trace.tables["signal_state"].to_pylist()
     assert len(rows) == 14 * 199
-    words = {
-        "LANE_STATE_GO": "green",
-        "LANE_STATE_STOP": "red",
-        "LANE_STATE_ARROW_STOP": "red",
-        "LANE_STATE_UNKNOWN": None,
-        None: None,
-    }
+    words = {"GO": "green", "STOP": "red", "ARROW_STOP": "red", "UNKNOWN": None}
     for name, light in told["dynamic_map_states"].items():
-        assert [row["state"] for row in rows if row["signal_id"] == name] == [
-            words[w] for w in light["state"]["object_state"]
-        ]
-    found = load_map(read_source(shared(f"{FOLDER}/{WAYMO}.pkl")))
-    stands = {
-        row["signal_id"]: row for row in found.tables["traffic_signal"].to_pylist() if row["kind"] == "traffic_light"
-    }
-    assert set(stands) == set(told["dynamic_map_states"]) - {"204"}  # of that lane the map has one point
-    for name, row in stands.items():
+        expected = [word and words[word.removeprefix("LANE_STATE_")] for word in light["state"]["object_state"]]
+        assert [row["state"] for row in rows if row["signal_id"] == name] == expected
+    stands = values(on_map(WAYMO), "traffic_signal", "signal_id lanelet_id x_m y_m", kind="traffic_light")
+    assert {name for name, *_ in stands} == set(told["dynamic_map_states"]) - {
+        "204"
+    }  # of that lane the map has one point
+    for name, lane, x, y in stands:
         place = told["dynamic_map_states"][name]["stop_point"]
-        assert (row["x_m"], row["y_m"], row["lanelet_id"]) == (pytest.approx(place[0]), pytest.approx(place[1]), name)
+        assert (lane, x, y) == (name, pytest.approx(place[0]), pytest.approx(place[1]))
 
 
 @pytest.mark.parametrize(
@@ -182,24 +169,16 @@ def test_the_lights_of_waymo() -> None:
 )
 def test_cars_drive_on_the_lanes(name: str, side: str, n_lanes: int, off_m: float) -> None:
     """Each moving car is on a lane that runs as it drives, and near its middle; the lanes alone tell the same side as the place does."""
-    path = shared(f"{FOLDER}/{name}.pkl")
-    trace, found = read(path), load_map(read_source(path))
-    assert (found.handedness, found.handedness_source) == (side, "attribute")
-    assert [
-        row["check_id"] for row in found.tables["map_quality"].to_pylist() if row["check_id"].startswith("handedness")
-    ] == []
+    trace, found = first(name), on_map(name)
+    assert hand(found) == (side, "attribute")
+    assert [check for check in checks(found) if check.startswith("handedness")] == []
     assert found.tables["lanelet"].num_rows == n_lanes
     points = {key: found.tables["lane_point"][key].to_numpy() for key in ("x_m", "y_m", "tx", "ty", "half_width_m")}
     wheels = {"car", "bus", "truck", "vehicle", "van"}
-    kinds = {row["actor_id"]: row["actor_class"] for row in trace.tables["actor"].to_pylist()}
+    kinds = classes(trace)
     along, beside = [], []
     for row in trace.tables["actor_state"].to_pylist()[::7]:
-        if (
-            kinds[row["actor_id"]] not in wheels
-            or row["x_m"] is None
-            or row["vx_mps"] is None
-            or row["yaw_rad"] is None
-        ):
+        if kinds[row["actor_id"]] not in wheels or None in (row["x_m"], row["vx_mps"], row["yaw_rad"]):
             continue
         if np.hypot(row["vx_mps"], row["vy_mps"]) < 3.0:
             continue
@@ -218,18 +197,14 @@ def test_cars_drive_on_the_lanes(name: str, side: str, n_lanes: int, off_m: floa
 def test_neighbours_are_those_that_waymo_names() -> None:
     """Waymo names neighbours that go the same way. Where a lane has only one on a side, along all of it, the shapes tell the same."""
     told = second(WAYMO)["map_features"]
-    found = {
-        row["lanelet_id"]: row
-        for row in load_map(read_source(shared(f"{FOLDER}/{WAYMO}.pkl"))).tables["lanelet"].to_pylist()
-    }
     same = n = 0
-    for name, row in found.items():
+    for name, row in lanelets(on_map(WAYMO)).items():
         for side in ("left", "right"):
             named = told[name][f"{side}_neighbor"]
-            whole = len(named) == 1 and int(named[0]["self_end_index"]) - int(named[0]["self_start_index"]) > 0.9 * len(
-                told[name]["polyline"]
+            shared_points = (
+                int(named[0]["self_end_index"]) - int(named[0]["self_start_index"]) if len(named) == 1 else 0
             )
-            if whole and row["junction_id"] is None:
+            if shared_points > 0.9 * len(told[name]["polyline"]) and row["junction_id"] is None:
                 n += 1
                 same += row[f"{side}_id"] == named[0]["feature_id"] and row[f"{side}_against"] is False
     assert n > 40
@@ -239,12 +214,8 @@ def test_neighbours_are_those_that_waymo_names() -> None:
 def test_widths_are_those_that_waymo_tells() -> None:
     """`width` of the scenario is measured to points of the lines, not to the lines, so that it may be a little more."""
     told = second(WAYMO)["map_features"]
-    found = load_map(read_source(shared(f"{FOLDER}/{WAYMO}.pkl")))
-    widths = {
-        row["lanelet_id"]: row["width_m"] for row in found.tables["lanelet"].to_pylist() if row["junction_id"] is None
-    }
     off = []
-    for name, width in widths.items():
+    for name, width in values(on_map(WAYMO), "lanelet", "lanelet_id width_m", junction_id=None):
         both = told[name]["width"]
         if (both > 0.0).all() and both.max() < 2.2 and told[name]["left_boundaries"] and told[name]["right_boundaries"]:
             off.append(width - float(both.sum(axis=1).mean()))
@@ -262,17 +233,8 @@ def test_one_command_judges_a_folder_of_them(tmp_path: Path) -> None:
         (folder / f"{name}.pkl").symlink_to(shared(f"{FOLDER}/{name}.pkl"))
     (folder / "dataset_summary.pkl").write_bytes(pickle.dumps({}))
     command = [
-        sys.executable,
-        "-m",
-        "drivelint",
-        "check",
-        str(folder),
-        "--out",
-        str(tmp_path / "out"),
-        "--no-annotate",
-        "--format",
-        "json",
-    ]
+        sys.executable, "-m", "drivelint", "check", str(folder), "--out", str(tmp_path / "out"), "--no-annotate", "--format", "json",
+    ]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=500, check=False)
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)

@@ -10,7 +10,7 @@ from drivelint.errors import MapError
 from drivelint.formats import load_map
 from drivelint.inspect import InspectRequest, inspect
 from drivelint.road.map_reader import MapSource, MapTables
-from tests.formats.opendrive.xodr import checks, lanelets, points, rows
+from tests.formats.maps import checks, hand, lanelet, lanelets, links, messages, points, rows, values
 from tests.formats.sumo.fcd_text import xml
 
 if TYPE_CHECKING:
@@ -71,36 +71,32 @@ def tee(kind: str, stem: tuple[str, str], light: str = "", major: str = "M") -> 
 
 def test_lanes_and_their_ways_on() -> None:
     found = tee("priority", ("m", "m"))
-    assert (found.handedness, found.handedness_source) == ("rht", "attribute")
-    lanes = lanelets(found)
-    assert (lanes["we_0"]["left_id"], lanes["we_0"]["left_against"], lanes["we_0"]["right_id"]) == ("we_1", False, None)
-    assert (lanes["we_1"]["right_id"], lanes["we_1"]["right_against"], lanes["we_1"]["left_id"]) == (
-        "we_0",
-        False,
-        None,
-    )
-    assert (lanes["ew_0"]["left_id"], lanes["ew_0"]["left_against"]) == ("ea_1", True)
-    assert {name for name, row in lanes.items() if row["junction_id"] == "c"} == {n for n in lanes if n[0] == ":"}
-    assert {(row["from_id"], row["to_id"]) for row in rows(found, "lane_link")} >= {
+    assert hand(found) == ("rht", "attribute")
+    assert lanelet(found, "we_0", "left_id left_against right_id") == ("we_1", False, None)
+    assert lanelet(found, "we_1", "right_id right_against left_id") == ("we_0", False, None)
+    assert lanelet(found, "ew_0", "left_id left_against") == ("ea_1", True)
+    inside = values(found, "lanelet", "lanelet_id", junction_id="c")
+    assert set(inside) == {name for name in lanelets(found) if name[0] == ":"}
+    assert set(links(found)) >= {
         ("we_0", ":c_0_0"), (":c_0_0", "ea_0"), ("st_0", ":c_4_0"), (":c_4_0", ":c_5_0"), (":c_5_0", "wa_0"),
     }  # fmt: skip
-    assert (lanes["we_0"]["width_m"], lanes["st_0"]["width_m"]) == (pytest.approx(WIDTH), pytest.approx(3.0))
-    first = points(found)["we_0"][0]
-    assert [first[k] for k in ("left_x_m", "left_y_m", "right_y_m")] == pytest.approx([0.0, -3.2, -6.4])
+    assert (*lanelet(found, "we_0", "width_m"), *lanelet(found, "st_0", "width_m")) == pytest.approx((WIDTH, 3.0))
+    first = values(found, "lane_point", "left_x_m left_y_m right_y_m", lanelet_id="we_0", k=0)
+    assert first == [(0.0, -3.2, -6.4)]
     assert not checks(found)
-    assert {row["marking"] for row in rows(found, "lane_boundary")} == {None}
+    assert set(values(found, "lane_boundary", "marking")) == {None}
 
 
 def test_the_limit_holds_through_a_junction() -> None:
-    limits = {row["lanelet_id"]: row["limit_mps"] for row in rows(tee("priority", ("m", "m")), "speed_limit")}
+    limits = dict(values(tee("priority", ("m", "m")), "speed_limit", "lanelet_id limit_mps"))
     assert set(limits.values()) == {13.89}
     assert {":c_4_0", ":c_5_0"} <= limits.keys()
     ways = (
         edge("a", lane("a", 0, "0,0 50,0"), ends=("a", "b")),
         edge(":b_0", lane(":b_0", 0, "50,0 60,0").replace("13.89", "4")),
     )
-    alone = {row["lanelet_id"]: row["limit_mps"] for row in rows(net(*ways), "speed_limit")}
-    assert alone == {"a_0": 13.89}  # what bends allow is no limit
+    alone = values(net(*ways), "speed_limit", "lanelet_id limit_mps")
+    assert alone == [("a_0", 13.89)]  # what bends allow is no limit
 
 
 def test_where_the_ways_meet_there_is_no_wedge() -> None:
@@ -123,16 +119,10 @@ def test_where_the_ways_meet_there_is_no_wedge() -> None:
 )
 def test_signs_of_the_lesser_road(kind: str, stem: tuple[str, str], sign: str | None) -> None:
     found = tee(kind, stem)
-    signs = [(row["kind"], row["lanelet_id"]) for row in rows(found, "traffic_signal")]
-    assert signs == ([(sign, "st_0")] if sign else [])
-    lines = [(row["lanelet_id"], row["source"]) for row in rows(found, "stop_line")]
+    signs = values(found, "traffic_signal", "kind lanelet_id x_m y_m lane_s_m")
+    assert signs == ([(sign, "st_0", 56.6, -10.0, 50.0)] if sign else [])
+    lines = values(found, "stop_line", "lanelet_id source")
     assert lines == ([("st_0", "connection")] if sign == "stop" else [])
-    for row in rows(found, "traffic_signal"):
-        assert (row["x_m"], row["y_m"], row["lane_s_m"]) == (
-            pytest.approx(56.6),
-            pytest.approx(-10.0),
-            pytest.approx(50.0),
-        )
 
 
 def test_who_turns_across_the_main_road_has_no_sign() -> None:
@@ -148,20 +138,19 @@ def test_who_turns_across_the_main_road_has_no_sign() -> None:
 
 def test_lights_by_connection() -> None:
     found = tee("traffic_light", ("o", "o"), light="L", major="O")
-    heads = {(row["signal_id"], row["lanelet_id"], *row["turns"]) for row in rows(found, "traffic_signal")}
-    assert heads == {
+    heads = values(found, "traffic_signal", "signal_id lanelet_id turns")
+    assert {(name, lane_id, *turns) for name, lane_id, turns in heads} == {
         ("L_0", ":c_0_0", "straight"), ("L_1", ":c_0_1", "straight"), ("L_2", ":c_2_0", "straight"),
         ("L_3", ":c_3_0", "right"), ("L_4", ":c_4_0", "left"),
     }  # fmt: skip
-    assert [row["lanelet_id"] for row in rows(found, "stop_line")] == ["ew_0", "st_0", "we_0", "we_1"]
-    assert all(row["dynamic"] for row in rows(found, "traffic_signal"))
+    assert values(found, "stop_line", "lanelet_id") == ["ew_0", "st_0", "we_0", "we_1"]
+    assert set(values(found, "traffic_signal", "dynamic")) == {True}
     # without the lanes inside the junction, the heads stand at the ends of those before it
     bare = net(
         edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "c")), edge("b", lane("b", 0, "60,0 99,0"), ends=("c", "y")),
         link("a", "b", "o", more='tl="L" linkIndex="7"'),
     )  # fmt: skip
-    (head,) = rows(bare, "traffic_signal")
-    assert (head["signal_id"], head["lanelet_id"], head["lane_s_m"]) == ("L_7", "a_0", pytest.approx(50.0))
+    assert values(bare, "traffic_signal", "signal_id lanelet_id lane_s_m") == [("L_7", "a_0", 50.0)]
 
 
 @pytest.mark.parametrize(
@@ -179,20 +168,18 @@ def test_lights_by_connection() -> None:
     ],
 )
 def test_who_may_drive_on_a_lane(may: str, kind: str, drivable: bool) -> None:
-    found = lanelets(net(edge("a", lane("a", 0, "0,0 50,0", may), ends=("x", "y"))))["a_0"]
-    assert (found["lane_type"], found["drivable"]) == (kind, drivable)
+    found = net(edge("a", lane("a", 0, "0,0 50,0", may), ends=("x", "y")))
+    assert lanelet(found, "a_0", "lane_type drivable") == (kind, drivable)
 
 
 def test_left_hand_nets_say_so() -> None:
-    parts = edge(
-        "a", lane("a", 0, "0,4.8 50,4.8"), lane("a", 1, "0,1.6 50,1.6"), ends=("x", "y"), more='type="highway.motorway"'
-    )
+    lanes = lane("a", 0, "0,4.8 50,4.8"), lane("a", 1, "0,1.6 50,1.6")
+    parts = edge("a", *lanes, ends=("x", "y"), more='type="highway.motorway"')
     found = net(parts, more='lefthand="true"')
-    assert (found.handedness, found.handedness_source) == ("lht", "attribute")
-    row = lanelets(found)["a_0"]
-    assert (row["right_id"], row["left_id"], row["road_type"]) == ("a_1", None, "motorway")
+    assert hand(found) == ("lht", "attribute")
+    assert lanelet(found, "a_0", "right_id left_id road_type") == ("a_1", None, "motorway")
     doubted = net(parts, more='lefthand="true"', handedness="rht")
-    assert (doubted.handedness, doubted.handedness_source) == ("rht", "option")
+    assert hand(doubted) == ("rht", "option")
     assert "handedness_disagrees" in checks(doubted)
 
 
@@ -210,28 +197,17 @@ def test_what_is_broken_is_named() -> None:
 
 
 def test_crossings_lie_across_the_lanes() -> None:
-    walk = (
-        '<edge id=":c_c0" function="crossing" crossingEdges="a">'
-        + lane(":c_c0", 0, "20,-3 20,3", 'width="4" allow="pedestrian"')
-        + "</edge>"
-    )
+    inner = lane(":c_c0", 0, "20,-3 20,3", 'width="4" allow="pedestrian"')
+    walk = f'<edge id=":c_c0" function="crossing" crossingEdges="a">{inner}</edge>'
     found = net(edge("a", lane("a", 0, "0,0 50,0"), ends=("x", "y")), walk)
-    (row,) = rows(found, "crossing")
-    assert (row["crossing_id"], row["lanelet_id"], row["s_start_m"], row["s_end_m"]) == (
-        ":c_c0_0",
-        "a_0",
-        pytest.approx(18),
-        pytest.approx(22),
-    )
+    assert values(found, "crossing", "crossing_id lanelet_id s_start_m s_end_m") == [(":c_c0_0", "a_0", 18, 22)]
 
 
 def test_the_stand_in_of_netconvert_for_a_road_without_a_limit_is_unknown() -> None:
     """netconvert 1.28.0 writes 39.44 m/s for OpenStreetMap's `maxspeed=none`, and for a motorway without a limit (findings/)."""
     free, posted = (lane(name, 0, f"{x},0 {x + 50},0") for name, x in (("free", 0), ("posted", 60)))
     tables = net(edge("free", free.replace("13.89", "39.44"), ends=("a", "b")), edge("posted", posted, ends=("c", "d")))
-    assert {row["lanelet_id"]: row["limit_mps"] for row in rows(tables, "speed_limit")} == {
-        "posted_0": pytest.approx(13.89)
-    }
+    assert values(tables, "speed_limit", "lanelet_id limit_mps") == [("posted_0", 13.89)]
     assert "invalid_speed" in checks(tables)
 
 
@@ -252,10 +228,10 @@ def imported(key: str = "opendrive-files", more: str = "", **options: Any) -> Ma
 @pytest.mark.parametrize("key", ["opendrive-files", "opendrive"])
 def test_a_net_that_was_imported_from_opendrive_has_lost_side_and_limits(key: str) -> None:
     found = imported(key)
-    assert (found.handedness, found.handedness_source) == ("rht", "default")
-    (message,) = (row["message"] for row in rows(found, "map_quality") if row["check_id"] == "imported_net")
+    assert hand(found) == ("rht", "default")
+    (message,) = messages(found, "imported_net")
     assert "from the OpenDRIVE file a.xodr" in message
-    assert {row["lanelet_id"]: row["limit_mps"] for row in rows(found, "speed_limit")} == {"b_0": pytest.approx(8.33)}
+    assert values(found, "speed_limit", "lanelet_id limit_mps") == [("b_0", 8.33)]
 
 
 def test_what_an_imported_net_or_the_user_says_of_the_side_counts() -> None:
@@ -264,10 +240,10 @@ def test_what_an_imported_net_or_the_user_says_of_the_side_counts() -> None:
         (imported(handedness="lht"), ("lht", "option")),
         (imported(key="node-files"), ("rht", "attribute")),
     ):
-        assert (found.handedness, found.handedness_source) == expected
+        assert hand(found) == expected
         assert "handedness_default" not in checks(found)
     assert "imported_net" not in checks(imported(key="node-files"))
-    assert {row["lanelet_id"] for row in rows(imported(key="node-files"), "speed_limit")} == {"a_0", "b_0"}
+    assert set(values(imported(key="node-files"), "speed_limit", "lanelet_id")) == {"a_0", "b_0"}
 
 
 def test_inspect_says_that_a_net_was_imported(tmp_path: Path) -> None:
