@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import re
+import sys
 import zlib
 from collections import defaultdict
 from pathlib import Path
@@ -17,7 +18,7 @@ from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Callable, Generator, Sequence
 
     from drivelint.result.model import Result
 
@@ -61,6 +62,24 @@ def overtakes(tmp_path_factory: pytest.TempPathFactory) -> Result:
     from tests.result import fixture_result
 
     return fixture_result.run(tmp_path_factory.mktemp("overtakes"))
+
+
+@pytest.fixture
+def ran(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[int, str, str]]:
+    """Return a function that runs a command in this process (quicker) and returns exit code, stdout and stderr."""
+    from drivelint import cli
+
+    def run(*args: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["drivelint", *args])
+        monkeypatch.setenv("COLUMNS", "120")
+        with pytest.raises(SystemExit) as left:
+            cli.main()
+        out, err = capfd.readouterr()
+        assert isinstance(left.value.code, int)
+        assert "Traceback" not in err
+        return left.value.code, out, err
+
+    return run
 
 
 class BySharing(LoadFileScheduling):  # type: ignore[misc]

@@ -52,23 +52,6 @@ Refused = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture
-def ran(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Ran:
-    """Return a function that runs a command in this process (quicker) and returns exit code, stdout and stderr."""
-
-    def run(*args: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["drivelint", *args])
-        monkeypatch.setenv("COLUMNS", "120")
-        with pytest.raises(SystemExit) as left:
-            cli.main()
-        out, err = capfd.readouterr()
-        assert isinstance(left.value.code, int)
-        assert "Traceback" not in err
-        return left.value.code, out, err
-
-    return run
-
-
-@pytest.fixture
 def refused(ran: Ran) -> Refused:
     """Return a function that runs a command that must be refused and returns its exit code and one line."""
 
@@ -95,53 +78,37 @@ def test_the_last_command_of_the_help_stands_apart_from_what_to_begin_with() -> 
     assert lines[begin - 2].split()[0] == "rules"
 
 
-def test_help_loads_nothing_heavy() -> None:
-    """Which is why it takes 0.12 s; a timed test would fail on a busy machine."""
-    probe = (
-        "import sys; sys.argv = ['drivelint', '--help']\n"
-        "from drivelint.cli import main\n"
-        "try: main()\n"
-        "except SystemExit: print('|'.join(sorted(sys.modules)))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", probe],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
-    )
-    loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
-    assert "drivelint" in loaded
-    assert not loaded & {"duckdb", "pyarrow", "numpy", "polars", "lxml", "mcap", "shapely", "yaml", "msgspec"}
+LOADED = """
+import sys
+from drivelint.cli import main
+try: main()
+except SystemExit: print('|'.join(sorted(sys.modules)))
+"""
 
 
-def test_listing_rules_loads_nothing_that_only_logs_need(tmp_path: Path) -> None:
-    probe = (
-        "import sys; sys.argv = ['drivelint', 'rules', 'list']\n"
-        "from drivelint.cli import main\n"
-        "try: main()\n"
-        "except SystemExit: print('|'.join(sorted(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True, cwd=tmp_path)
-    loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
-    assert "drivelint" in loaded
-    assert not loaded & {"numpy", "pyarrow", "shapely", "mcap", "google", "lxml"}
-
-
-@pytest.mark.ci
-def test_a_check_loads_neither_pandas_nor_what_only_reports_need(tmp_path: Path) -> None:
-    """DuckDB and pyarrow load pandas wherever it is installed: half a second."""
+@pytest.mark.parametrize(
+    ("args", "needed", "heavy"),
+    [
+        pytest.param(["--help"], set(), "duckdb pyarrow numpy polars lxml mcap shapely yaml msgspec", id="help"),
+        pytest.param(["rules", "list"], set(), "numpy pyarrow shapely mcap google lxml", id="rules without what logs need"),
+        # DuckDB and pyarrow load pandas wherever it is installed: half a second
+        pytest.param(
+            ["check", *TRACES, *ON_ROAD, *SDA, NO_COPIES], {"duckdb", "pyarrow"}, "pandas jinja2 yaml matplotlib scipy",
+            id="check without pandas and what reports need", marks=pytest.mark.ci,
+        ),
+    ],
+)  # fmt: skip
+def test_a_command_loads_nothing_heavy_that_it_does_not_need(
+    args: list[str], needed: set[str], heavy: str, tmp_path: Path
+) -> None:
+    """Which is why the help takes 0.12 s; a timed test would fail on a busy machine."""
     assert find_spec("pandas") is not None
-    probe = (
-        f"import sys; sys.argv = ['drivelint', 'check', *{[*TRACES, *ON_ROAD, *SDA, NO_COPIES]!r}]\n"
-        "from drivelint.cli import main\n"
-        "try: main()\n"
-        "except SystemExit: print('|'.join(sorted(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True, cwd=tmp_path)
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    command = [sys.executable, "-c", LOADED, *args]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path, env=env)
     loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
-    assert {"drivelint", "duckdb", "pyarrow"} <= loaded
-    assert not loaded & {"pandas", "jinja2", "yaml", "matplotlib", "scipy"}
+    assert {"drivelint", *needed} <= loaded
+    assert not loaded & set(heavy.split())
 
 
 def test_version(ran: Ran) -> None:

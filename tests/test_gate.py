@@ -16,7 +16,6 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from drivelint import cli
 from drivelint import demo as demo_files
 from drivelint.guide import FOLDER
 from drivelint.report import outputs
@@ -33,22 +32,9 @@ SAFE, NEAR, COLLISION = (str(OVERTAKE / f"{name}.csv") for name in ("safe", "nea
 Ran = Callable[..., tuple[int, str, str]]
 
 
-@pytest.fixture
-def ran(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Ran:
-    """Return a function that runs a command in an empty folder and returns exit code, stdout and stderr."""
+@pytest.fixture(autouse=True)
+def empty_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "120")
-
-    def run(*args: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["drivelint", *args])
-        with pytest.raises(SystemExit) as left:
-            cli.main()
-        out, err = capfd.readouterr()
-        assert isinstance(left.value.code, int)
-        assert "Traceback" not in err
-        return left.value.code, out, err
-
-    return run
 
 
 @pytest.fixture(scope="module")

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 RATES = (1.0, 2.0, 5.0, 10.0)
 
 
-def line(heading: float = 0.0, x: float = 0.0, y: float = 0.0) -> Road:
-    """Return a straight way without a map, its station 0 at (x, y)."""
-    return Road(None, ((1000.0, 0.0),), (x, y, heading))  # type: ignore[arg-type]
+def line(heading: float = 0.0) -> Road:
+    """Return a straight way without a map."""
+    return Road(None, ((1000.0, 0.0),), (0.0, 0.0, heading))  # type: ignore[arg-type]
 
 
 def between(scene: Drive) -> list[Row]:
@@ -40,12 +40,12 @@ def verdict(*scenes: Drive, rule: str = "ukhc.no-collision") -> list[str]:
 RANK = {"": -1, "not_applicable": 0, "pass": 1, "unknown": 2, "fail": 3}
 
 
-def crossing(rate: float, late_m: float, *, side: float = 1.0, phase: float = 0.0, drive_id: str = "d") -> Drive:
+def crossing(rate: float, late_m: float, *, side: float = 1.0, phase: float = 0.0) -> Drive:
     """Return two at 15 m/s whose ways cross at right angles at 4 s; the other is `late_m` behind."""
     t = times(8.0, period=1 / rate) + phase
     ego = moving("ego", line(), t, 15 * (t - 4), 0.0)
     other = moving("o", line(side * math.pi / 2), t, 15 * (t - 4) - late_m, 0.0)
-    return drive([ego, other], None, drive_id=drive_id)
+    return drive([ego, other], None)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -60,7 +60,7 @@ def test_a_crash_at_a_crossing_is_found_at_every_rate(rate: float, side: float) 
 # ---- beside each other in no step
 
 
-def cyclist(rate: float, gap: float, *, hand: str = "rht", phase: float = 0.0, drive_id: str = "d") -> Drive:
+def cyclist(rate: float, gap: float, *, hand: str = "rht", phase: float = 0.0) -> Drive:
     """Return the ego at 13 m/s past a cyclist at 3 m/s in the lane beside, `gap` metres between the two."""
     way = road(((600.0, 0.0),), hand, (2, 1) if hand == "lht" else (1, 2))
     t = times(12.0, period=1 / rate) + phase
@@ -69,7 +69,7 @@ def cyclist(rate: float, gap: float, *, hand: str = "rht", phase: float = 0.0, d
     rider = moving(
         "c", way, t, 200 + 3 * (t - 6), way.own + side * (0.9 + gap + 0.3), kind="bicycle", length=1.8, width=0.6
     )
-    return drive([ego, rider], way.environment, drive_id=drive_id)
+    return drive([ego, rider], way.environment)
 
 
 @pytest.mark.ci

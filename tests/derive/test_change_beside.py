@@ -34,12 +34,12 @@ def motorway(hand: str) -> Road:
     return Road(load_map(MapSource(f"motorway-{hand}.xodr", text.encode())), ((900.0, 0.0),))
 
 
-def change(hand: str, period: float, *, ahead_m: float, faster_mps: float = 0.0, lasts: float = 4.0) -> list[Row]:
+def change(hand: str, period: float, *, ahead_m: float, faster_mps: float = 0.0) -> list[Row]:
     """Judge a change from the outer to the middle lane at 25 m/s beside a vehicle whose centre is so far ahead as it begins."""
     way = motorway(hand)
     side = 1 if hand == "lht" else -1
     t = times(16.0, period=period)
-    ego = moving("ego", way, t, 100 + 25 * t, side * LANE * (2.5 - ease((t - 6) / lasts)))
+    ego = moving("ego", way, t, 100 + 25 * t, side * LANE * (2.5 - ease((t - 6) / 4.0)))
     other = moving("other", way, t, 100 + ahead_m + 25 * t + faster_mps * (t - 6), side * LANE * 1.5)
     return judged([drive([ego, other], way.environment)], rules=[SAFE])
 

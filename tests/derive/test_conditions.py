@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -30,10 +29,9 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 
-def ride(way: Road | None = None, d: float | None = None, seconds: float = 1.0, **more: Any) -> Actor:
-    way = way or road()
-    t = times(seconds)
-    return replace(moving("ego", way, t, 5 + 10 * t, way.own if d is None else d), **more)
+def ride(way: Road | None = None) -> Actor:
+    way, t = way or road(), times(1.0)
+    return moving("ego", way, t, 5 + 10 * t, way.own)
 
 
 def highway(kind: str | None, *lanes: tuple[int, str]) -> Road:

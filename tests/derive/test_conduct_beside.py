@@ -9,7 +9,7 @@ import pytest
 from shapely import affinity
 from shapely.geometry import Polygon, box
 
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, seconds, standing, swing, times
+from tests.scenes import Actor, Road, derived, drive, moving, road, rows, seconds, standing, swing, times
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
@@ -57,8 +57,8 @@ def test_gaps_and_clearances_are_those_of_the_boxes(curvature: float) -> None:
 # ---- passing
 
 
-def passings(way: Road, *actors: Actor, egos: tuple[str, ...] = ("ego",)) -> list[dict[str, object]]:
-    con = derived(drive(actors, way.environment, egos=egos), tables=["passing"])
+def passings(way: Road, *actors: Actor) -> list[dict[str, object]]:
+    con = derived(drive(actors, way.environment), tables=["passing"])
     return rows(con, "FROM passing ORDER BY ego_id, occurrence")
 
 
@@ -77,23 +77,3 @@ def test_the_ego_passes_a_parked_car_round_the_overtaking_side(hand: str) -> Non
     assert seconds([found], "t_to_ns")[0] == pytest.approx((204.8 - 50) / 12, abs=0.1)
     assert found["gap_m"] == pytest.approx(3.5 - 1.8, abs=1e-6)
     assert (found["ego_speed_mps"], found["speed_mps"]) == pytest.approx((12.0, 0.0))
-
-
-STEADY = "ukhc.r168.when-overtaken"
-
-
-def overtaken(hand: str, *, drift: float, out: bool = True, at: float = 6.0, follows: float = 22.0) -> str:
-    """Return the verdict on an ego at 18 m/s that moves over by `drift` metres in the 2 s after `at`, before a car that comes up.
-
-    The car is out in the opposing lane, and 15 m behind the ego at 7 s, or follows in the ego's lane, at `follows` m/s.
-    """
-    way = road(((900.0, 0.0),), hand)
-    t = times(20.0)
-    u = np.clip((t - at) / 2, 0, 1)
-    ego = moving("ego", way, t, 80 + 18 * t, way.own + way.over * drift * u * u * (3 - 2 * u))
-    behind = 80 + 18 * 7 - 4.8 - 15 + follows * (t - 7)
-    if not out:
-        behind = 80 + 18 * t - 20
-    other = moving("x", way, t, behind, np.full(len(t), way.other if out else way.own))
-    (row,) = judged([drive([ego, other], way.environment)], rules=[STEADY])
-    return str(row["verdict"])

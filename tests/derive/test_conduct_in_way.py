@@ -21,7 +21,7 @@ def motorway(hand: str) -> tuple[Road, float]:
     return road(((2000.0, 0.0),), hand=hand, lanes=lanes, limit_mph=70), -1.5 * LANE * (1 if hand == "rht" else -1)
 
 
-def braked(way: Road, d: float, *, stays: float = 0.0, light: str | None = None) -> Actor:
+def braked(way: Road, d: float, *, stays: float = 0.0) -> Actor:
     """Return an ego at 25 m/s that brakes with 6 m/s2 from 400 m on to a stand at 452 m, stays, and drives on."""
     t = times(6.0 + 4.2 + max(stays, 0.1) + 6.0)
     v = np.clip(25 - 6 * (t - 6), 0, 25)
@@ -29,8 +29,7 @@ def braked(way: Road, d: float, *, stays: float = 0.0, light: str | None = None)
     s = 250 + np.concatenate([[0.0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(t))])
     ego = moving("ego", way, t, s, d)
     _, _, heading = way.at(s, np.full(t.shape, d))
-    lights = (light,) * len(t) if light else ()
-    return replace(ego, yaw=heading, vx=v * np.cos(heading), vy=v * np.sin(heading), indicator=lights)
+    return replace(ego, yaw=heading, vx=v * np.cos(heading), vy=v * np.sin(heading))
 
 
 def verdicts(scene: Any, rule: str) -> set[str]:

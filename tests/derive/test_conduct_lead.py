@@ -13,26 +13,16 @@ from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
 
-def lanes(hand: str, n: int = 2) -> tuple[int, int]:
-    return (0, n) if hand == "rht" else (n, 0)
-
-
-def shift(t: np.ndarray, begin: float, lasts: float = 2.0) -> np.ndarray:
-    """Return 0..1 over `lasts` seconds from `begin`."""
-    u: np.ndarray = np.clip((t - begin) / lasts, 0.0, 1.0)
-    return u
-
-
 @HANDS
 def test_a_lead_that_cut_in_joined_then(hand: str) -> None:
     """From the lane beside into the ego's: turned by 10 degrees, it is 2.6 m across, and in when its centre is 3.0 m from the lane's."""
-    way = road(hand=hand, lanes=lanes(hand))
+    way = road(hand=hand, lanes=(0, 2) if hand == "rht" else (2, 0))
     t = times(8.0)
     sign = 1 if hand == "rht" else -1
     slow, fast = -1.5 * LANE * sign, -0.5 * LANE * sign
     ego = moving("ego", way, t, 100 + 10 * t, slow)
     old = moving("old", way, t, 200 + 10 * t, slow)
-    other = moving("x", way, t, 130 + 10 * t, fast + (slow - fast) * shift(t, 3.0))
+    other = moving("x", way, t, 130 + 10 * t, fast + (slow - fast) * np.clip((t - 3.0) / 2.0, 0.0, 1.0))
     con = derived(drive([ego, old, other], way.environment), tables=["lead"])
     found = rows(con, "FROM lead ORDER BY t_ns")
     assert len(found) == len(t)

@@ -40,9 +40,8 @@ def slope(t: Floats, y: Floats, half: float, share: float = 0.7) -> Floats:
     return found
 
 
-def columns(*actors: Actor, egos: tuple[str, ...] = ("ego",), ego: str = "ego") -> dict[str, Floats]:
-    con = derived(drive(actors, None, egos=egos), tables=["ego_motion"])
-    found = rows(con, "FROM ego_motion WHERE ego_id = $ego ORDER BY t_ns", {"ego": ego})
+def columns(ego: Actor) -> dict[str, Floats]:
+    found = rows(derived(drive([ego], None), tables=["ego_motion"]), "FROM ego_motion ORDER BY t_ns")
     return {name: np.array([row[name] for row in found], float) for name in (*COLUMNS, *PEAKS)}
 
 

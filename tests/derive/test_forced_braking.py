@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, swing, times
+from tests.scenes import derived, drive, judged, moving, road, rows, standing, swing, times
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -30,22 +29,13 @@ def stopping(t: Floats, v: float, at: float, by: float, again: float | None = No
     return speeds if again is None else np.where(t > again, np.clip(2 * (t - again), 0, v), speeds)
 
 
-def flipped(name: str, hand: str) -> str:
-    """Return the way through the crossroads as it is where the left is driven on."""
-    return name.translate(str.maketrans("ns", "sn")) if hand == "lht" else name
-
-
-def turning(
-    hand: str = "rht", *, by: float = 6.0, at: float = 8.0, again: float | None = None, s0: float = 46.0, period: float = 0.1,
-    more: tuple[Actor, ...] = (), ways: dict[str, Road] | None = None, drive_id: str = "d", **other: Any,
-) -> Drive:  # fmt: skip
+def turning(hand: str = "rht", *, again: float | None = None, period: float = 0.1) -> Drive:
     """Return the ego's turn across the oncoming traffic (in the junction from 7.9 s on) before one at 14 m/s that brakes at 8 s."""
-    ways = ways or cross(hand)
-    t = times(END, period=period)
-    own, across = ways["we"].own, flipped("wn", hand)
+    ways, t = cross(hand), times(END, period=period)
+    own, across = ways["we"].own, "ws" if hand == "lht" else "wn"
     ego = moving("ego", ways[across], t, 120 + 8 * t, own)
-    braking = moving("o", ways["ew"], t, way_of(stopping(t, 14.0, at, by, again), s0, t), own)
-    return drive([ego, replace(braking, **other), *more], ways["we"].environment, drive_id=drive_id)
+    braking = moving("o", ways["ew"], t, way_of(stopping(t, 14.0, 8.0, 6.0, again), 46.0, t), own)
+    return drive([ego, braking], ways["we"].environment)
 
 
 def forced(scene: Drive) -> list[Row]:
@@ -74,31 +64,20 @@ def test_who_has_to_stop_for_the_turn_is_forced_whether_it_comes_late_or_never(h
 
 @pytest.mark.parametrize("period", [0.05, 0.13, 0.19, 0.2, 1 / 3, 0.5, 1.0])
 def test_at_every_rate(period: float) -> None:
-    scene = turning(period=period, at=8.0)
+    scene = turning(period=period)
     assert forced(scene)[0]["decel_mps2"] > 4
     assert verdicts(scene, GAP) == [("fail", "o")]
 
 
-def passing(
-    hand: str,
-    *,
-    by: float = 6.5,
-    at: float = 11.0,
-    from_m: float = 380.0,
-    v: float = 16.0,
-    again: float | None = None,
-    more: tuple[Actor, ...] = (),
-    end: float = END,
-    **other_has: Any,
-) -> Drive:
+def passing(hand: str) -> Drive:
     """Return the ego's way round a parked car at 200 m, at 10 m/s, and somebody oncoming who stops for it."""
     way = road(((600.0, 0.0),), hand)
-    t = times(end)
+    t = times(END)
     s = 50 + 10 * t
     ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
     parked = standing("p", way, t, 200.0, way.own)
-    other = moving("o", way, t, from_m - way_of(stopping(t, v, at, by, again), 0.0, t), way.other, **other_has)
-    return drive([ego, parked, other, *more], way.environment)
+    other = moving("o", way, t, 380.0 - way_of(stopping(t, 16.0, 11.0, 6.5), 0.0, t), way.other)
+    return drive([ego, parked, other], way.environment)
 
 
 GIVE_WAY = "ukhc.r163.obstruction-give-way"

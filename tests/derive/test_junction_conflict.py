@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from tests.scenes import Row
 
 
-def conflicts(*actors: Actor, **options: object) -> list[Row]:
-    con = derived(drive(actors, None, **options), tables=["conflict"])  # type: ignore[arg-type]
+def conflicts(*actors: Actor) -> list[Row]:
+    con = derived(drive(actors, None), tables=["conflict"])
     return rows(con, "FROM conflict ORDER BY ego_id, occurrence")
 
 

@@ -18,22 +18,21 @@ SIDE = {"rht": -1, "lht": 1}  # of the ego's half, along road 1
 X = -200 + 100  # the crossing begins here and is 3 m wide
 
 
-def zebra(hand: str = "rht", said: str = "zebra", lights: tuple[tuple[str, str], ...] = ()) -> Road:
+def zebra(hand: str) -> Road:
     """Return the way from west to east with a crossing at s = 100 of road 1."""
-    return cross(hand, lights, (("1", crosswalk("x", 100.0, said=said)),))["we"]
+    return cross(hand, (), (("1", crosswalk("x", 100.0, said="zebra")),))["we"]
 
 
-def going(way: Road, *, v: float = 8.0, s0: float = 20.0, end: float = 14.0, name: str = "ego") -> Actor:
+def going(way: Road) -> Actor:
     """The front is at s0 + 2.4 + 8 t: on the crossing at 9.7 s, the rear past it at 10.675 s."""
-    t = times(end)
-    return moving(name, way, t, s0 + v * t, way.own)
+    t = times(14.0)
+    return moving("ego", way, t, 20.0 + 8.0 * t, way.own)
 
 
-def walker(name: str, t: np.ndarray, y: np.ndarray | float, x: float = X + 1.5, **more: object) -> Actor:
-    y = np.broadcast_to(np.asarray(y, float), t.shape).copy()
+def walker(name: str, t: np.ndarray, y: np.ndarray) -> Actor:
     vy = np.gradient(y, t)
-    given = {"length": 0.5, "width": 0.5, "kind": "pedestrian", **more}
-    return Actor(name, t, np.full(t.shape, x), y, np.where(vy < 0, -1.0, 1.0) * np.pi / 2, 0 * t, vy, **given)  # type: ignore[arg-type]
+    yaw = np.where(vy < 0, -1.0, 1.0) * np.pi / 2
+    return Actor(name, t, np.full(t.shape, X + 1.5), y, yaw, 0 * t, vy, 0.5, 0.5, "pedestrian")
 
 
 def passages(told: Drive) -> list[Row]:

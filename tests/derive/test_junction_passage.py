@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 LENGTH = {"right": TURN, "straight": 2 * R, "left": TURN}
 
 
-def going(way: Road, *, v: float = 8.0, s0: float = 120.0, end: float = 18.0, name: str = "ego") -> Actor:
-    """Drive in the way's own lane at v; its centre enters the junction at s = 185."""
-    t = times(end)
-    return moving(name, way, t, s0 + v * t, way.own)
+def going(way: Road) -> Actor:
+    """Drive in the way's own lane at 8 m/s; its centre enters the junction at s = 185."""
+    t = times(18.0)
+    return moving("ego", way, t, 120.0 + 8.0 * t, way.own)
 
 
-def passages(*actors: Actor, way: Road, **options: object) -> list[Row]:
-    con = derived(drive(actors, way.environment, **options), tables=["junction_passage"])  # type: ignore[arg-type]
+def passages(*actors: Actor, way: Road) -> list[Row]:
+    con = derived(drive(actors, way.environment), tables=["junction_passage"])
     return rows(con, "FROM junction_passage ORDER BY ego_id, occurrence")
 
 

@@ -16,16 +16,14 @@ if TYPE_CHECKING:
 RELATIONS = ("ahead_going", "from_left", "from_right", "oncoming", "pedestrian")
 
 
-def going(
-    way: Road, *, v: float = 8.0, s0: float = 120.0, end: float = 24.0, name: str = "ego", **more: object
-) -> Actor:
-    t = times(end)
-    return moving(name, way, t, s0 + v * t, way.own, **more)
+def going(way: Road, *, s0: float = 120.0, name: str = "ego") -> Actor:
+    t = times(24.0)
+    return moving(name, way, t, s0 + 8.0 * t, way.own)
 
 
-def answers(*actors: Actor, way: Road, **options: object) -> dict[str, Row]:
+def answers(*actors: Actor, way: Road) -> dict[str, Row]:
     """Return the rows of the first passage by relation."""
-    con = derived(drive(actors, way.environment, **options), tables=["passage_conflict"])  # type: ignore[arg-type]
+    con = derived(drive(actors, way.environment), tables=["passage_conflict"])
     found = rows(con, "FROM passage_conflict WHERE ego_id = 'ego' AND occurrence = 0 ORDER BY relation")
     assert tuple(row["relation"] for row in found) == RELATIONS
     return {row["relation"]: row | {"reason": row["reason"] and sentence(row["reason"])} for row in found}

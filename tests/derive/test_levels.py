@@ -17,12 +17,12 @@ HANDS = pytest.mark.parametrize("hand", ["lht", "rht"])
 CRASH = "ukhc.no-collision"
 
 
-def crossing(hand: str, rise_m: float | None = None, meet_s: float = 6.0) -> Drive:
+def crossing(hand: str, rise_m: float | None = None) -> Drive:
     """Return the ego on the lower road at 15 m/s and a car that crosses over it in the very moment, 300 m on."""
     low, high = bridge(hand, rise_m)
     t = times(12.0)
-    ego = moving("ego", low, t, 300 - 15 * (meet_s - t), low.own)
-    over = moving("over", high, t, 200 + 15 * (t - meet_s), high.own)
+    ego = moving("ego", low, t, 300 - 15 * (6.0 - t), low.own)
+    over = moving("over", high, t, 200 + 15 * (t - 6.0), high.own)
     return drive([ego, over], low.environment)
 
 

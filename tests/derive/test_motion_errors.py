@@ -13,10 +13,10 @@ COLUMNS = ("accel_mps2", "lat_accel_mps2", "accel_error_mps2", "lat_error_mps2",
 COMFORT = ("comfort.lateral", "comfort.accel-iso15622", "comfort.nuplan")
 
 
-def straight(speed: np.ndarray, *, column: np.ndarray | None = None, yaw: np.ndarray = STILL) -> Actor:
-    """Return an ego whose places follow `speed` along x, whatever the columns of its velocity and heading say."""
+def straight(speed: np.ndarray, *, yaw: np.ndarray = STILL) -> Actor:
+    """Return an ego whose places follow `speed` along x, whatever the column of its heading says."""
     x = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * 0.1)])
-    return Actor("ego", T, x, STILL.copy(), yaw, speed if column is None else column, STILL.copy())
+    return Actor("ego", T, x, STILL.copy(), yaw, speed, STILL.copy())
 
 
 def motion(ego: Actor) -> dict[str, np.ndarray]:

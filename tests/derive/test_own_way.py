@@ -41,9 +41,9 @@ def aside(way: Road, t: Floats, begin: float, lasts: float, share: float = 1.0) 
     return d
 
 
-def parked(way: Road, t: Floats, s: float = 200.0, reaches_in: float = 1.1) -> Actor:
+def parked(way: Road, t: Floats) -> Actor:
     """Return a car at the kerb that reaches into the ego's lane, and 0.25 m into the way of an ego in its middle."""
-    return standing("p", way, t, s, np.sign(way.own) * (LANE + 0.9 - reaches_in))
+    return standing("p", way, t, 200.0, np.sign(way.own) * (LANE + 0.9 - 1.1))
 
 
 @HANDS

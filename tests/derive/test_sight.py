@@ -58,11 +58,11 @@ def test_behind_a_box_inside_a_bend_nobody_is_seen() -> None:
     assert seen_ahead(way, box=False)[20]["lane_m"] > row["lane_m"] + 20
 
 
-def follows_nobody(*, in_sight: bool, seen_for_s: float = 3.0, gap: float = 60.0) -> Drive:
+def follows_nobody(*, in_sight: bool) -> Drive:
     """Return 25 s at 15 m/s behind one that is 60 m ahead, goes away, and is not recorded again."""
     t = times(25.0)
     ego = moving("ego", LONG, t, 100 + 15 * t, -0.5 * LANE)
-    lead = moving("x", LONG, t, 104.8 + gap + 17 * t, -0.5 * LANE).keep(t < seen_for_s + 0.05)
+    lead = moving("x", LONG, t, 164.8 + 17 * t, -0.5 * LANE).keep(t < 3.05)
     return drive([ego, lead], LONG.environment, in_sight=in_sight, sensor_range_m=100.0)
 
 

@@ -25,20 +25,21 @@ def head(name: str, subtype: str, s: float = 181.0) -> str:
     return signal(name, s, code, more=f'subtype="{subtype}"')
 
 
-def heads_at_line(heads: Heads, hand: str = "rht", line: bool = True) -> dict[str, Road]:
+def heads_at_line(heads: Heads, hand: str) -> dict[str, Road]:
     t = -1.75 if hand == "rht" else 1.75
-    lines = (("1", stop_line("line", LINE, t)),) if line else ()
-    return cross(hand, (*lines, *(("1", head(name, subtype)) for name, (subtype, _) in heads.items())))
+    return cross(
+        hand, (("1", stop_line("line", LINE, t)), *(("1", head(name, subtype)) for name, (subtype, _) in heads.items()))
+    )
 
 
-def going(way: Road, end: float = 14.0, v: float = 8.0) -> Actor:
+def going(way: Road) -> Actor:
     """Return the ego, whose front is at 122.4 + 8 t and over the line at 7.2 s; it has turned at 11 s."""
-    t = times(end)
-    return moving("ego", way, t, 120.0 + v * t, way.own)
+    t = times(14.0)
+    return moving("ego", way, t, 120.0 + 8.0 * t, way.own)
 
 
-def told(way: Road, heads: Heads, end: float = 14.0) -> Drive:
-    made = drive([going(way, end)], way.environment)
+def told(way: Road, heads: Heads) -> Drive:
+    made = drive([going(way)], way.environment)
     for name, (_, state) in heads.items():
         if state:
             lit(made, name, (0.0, state))

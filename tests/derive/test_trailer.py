@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -101,12 +101,10 @@ def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) 
 # ---- ids
 
 
-def renamed(
-    way: Road, at: NDArray[np.float64], early: NDArray[np.bool_], late: NDArray[np.bool_], **more: Any
-) -> list[Actor]:
+def renamed(way: Road, at: NDArray[np.float64], early: NDArray[np.bool_], late: NDArray[np.bool_]) -> list[Actor]:
     """Return one vehicle under two ids: in the samples of the one mask, and in those of the other."""
     whole = moving("ego", way, at, 50 + 18 * at, way.own)
-    return [whole.keep(early), replace(whole.keep(late), actor_id="next", **more)]
+    return [whole.keep(early), replace(whole.keep(late), actor_id="next")]
 
 
 @pytest.mark.ci

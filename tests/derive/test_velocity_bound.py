@@ -17,20 +17,20 @@ T = times(4.0)
 RULES = ("criticality.ttc", "criticality.drac", "criticality.ttb")
 
 
-def doubted(told: Drive, actor: str, code: str = "common_jolt", span: tuple[float, float] = (1.45, 2.55)) -> Drive:
-    """Return the drive with a doubt about an actor's velocity in this span."""
+def doubted(told: Drive, actor: str) -> Drive:
+    """Return the drive with a doubt about an actor's velocity from 1.45 s to 2.55 s."""
     table = told.trace.tables["doubt"]
-    whom = {"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": code}
-    row = {**whom, "t_from_ns": round(span[0] * 1e9), "t_to_ns": round(span[1] * 1e9)}
+    whom = {"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": "common_jolt"}
+    row = {**whom, "t_from_ns": 1_450_000_000, "t_to_ns": 2_550_000_000}
     told.trace.tables["doubt"] = pa.concat_tables([table, pa.Table.from_pylist([row], schema=table.schema)])
     return told
 
 
-def queue(hand: str = "rht", gap: float = 12.0, *, jolt: float = 0.5, speed: float = 5.0) -> Drive:
-    """Return an ego at 5 m/s behind a car whose velocity is recorded as that share of it for one sample."""
+def queue(hand: str, gap: float, speed: float) -> Drive:
+    """Return an ego at 5 m/s behind a car whose velocity is recorded as half of it for one sample."""
     way = road(hand=hand)
     lead = moving("x", way, T, 104.8 + gap + speed * T, way.own)
-    lead.vx[20] *= jolt
+    lead.vx[20] *= 0.5
     return drive([moving("ego", way, T, 100 + 5 * T, way.own), lead], way.environment)
 
 
@@ -41,6 +41,6 @@ def queue(hand: str = "rht", gap: float = 12.0, *, jolt: float = 0.5, speed: flo
 )
 def test_a_jolt_decides_only_where_its_bounds_do(hand: str, gap: float, speed: float, verdict: str) -> None:
     """Behind a car at the same speed, near or far, and so near to a slow one that it is hit before the jolt is over."""
-    told = queue(hand, gap, speed=speed)
+    told = queue(hand, gap, speed)
     found = judged([doubted(told, "x")], rules=RULES)
     assert {row["rule_id"]: row["verdict"] for row in found if row["object_id"] == "x"} == dict.fromkeys(RULES, verdict)

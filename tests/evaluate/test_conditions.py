@@ -10,8 +10,6 @@ from tests.evaluate.packs import (
     AFTER,
     EXECUTION,
     INVARIANT,
-    MEASURED,
-    PLACE_BEFORE,
     brief,
     findings,
     verdicts,
@@ -27,8 +25,6 @@ SPEED = {"reads": '["ego_state"]', "unit": '"m/s"', "sense": '">="'}
 SPEED_SQL = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 10 AS required FROM ego_state"
 REFERENCE = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
 AT = {"reads": '["ego_state", "exit_taken"]'}
-PAIR = {"reads": '["pair"]'}
-PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1 AS required FROM pair"
 
 PASS, OUT, NOWHERE = ("pass", "kept"), ("not_applicable", "outside_conditions"), ("not_applicable", "not_triggered")
 
@@ -110,21 +106,6 @@ def test_a_rule_holds_where_all_its_conditions_do(
     assert tuple(brief(verdicts(rule, scene)) for rule in rules) == tuple([end] for end in wanted)
 
 
-@pytest.mark.parametrize(
-    ("applies", "words"),
-    [
-        ('nation = ["de"]', "The country is not known: give --env nation=gb."),
-        (
-            'vehicle_class = ["car"]',
-            "The ego's class of vehicle is not known: give --env vehicle_class=car.",
-        ),
-    ],
-)
-def test_the_words_of_an_unknown_condition(tmp_path: Path, applies: str, words: str) -> None:
-    (row,) = verdicts(at_event(tmp_path, applies), drive([12, 12, 12], at=0.1))
-    assert row["reason"] == words
-
-
 @pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize(
     ("law", "nation", "judged"),
@@ -190,103 +171,7 @@ def test_a_signal_is_not_missed_where_known_conditions_exclude_the_rule(
         assert found[0]["assumes"] is None
 
 
-@pytest.mark.ci
-def test_each_drive_has_its_own_nation(tmp_path: Path) -> None:
-    scene = {
-        "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1], "speed_mps": [9, 12]} for e in "abc"],
-        "ego_condition": [{"ego_id": e, "t_s": [0.0, 0.1], "nation": n} for e, n in (("a", "de"), ("b", "gb"))],
-    }
-    rows = verdicts(invariant(tmp_path, law='["de"]'), scene)
-    assert [(r["ego_id"], r["verdict"]) for r in rows] == [("a", "fail"), ("b", "not_applicable"), ("c", "fail")]
-
-
-def test_what_is_not_known_is_named_and_how_to_give_it(tmp_path: Path) -> None:
-    said = {
-        "weather_unknown": "The weather is not known at 0.000 s: give --env weather=dry",
-        "engaged_unknown": "Whether the automated driver drives is not known at 0.000 s: give the log's mode flag engaged",
-    }
-    rule = invariant(tmp_path, 'weather = ["wet"]')
-    for given in ({}, {"weather": "wet", "engaged": None}):
-        (row,) = verdicts(rule, drive([12, 12], **given))
-        assert said[row["reason_code"]] in row["reason"]
-
-
-def test_observes_stands_in_the_sentence(tmp_path: Path) -> None:
-    rule = invariant(tmp_path, observes='"speed on the ramp"')
-    (kept,), (failed,) = (verdicts(rule, drive([v, v])) for v in (12, 9))
-    assert kept["reason"] == "Speed on the ramp 12 m/s at 0.000 s where at least 10 m/s is required: kept by 2 m/s."
-    assert failed["reason"] == "Speed on the ramp 9 m/s at 0.000 s where at least 10 m/s is required: missed by 1 m/s."
-
-
-def test_a_step_without_conditions_is_a_step_at_which_they_are_not_known(tmp_path: Path) -> None:
-    scene = drive([12, 12, 12], weather="wet")
-    scene["ego_condition"] = {"t_s": [0.0, 0.2], "weather": "wet"}
-    (row,) = verdicts(invariant(tmp_path, 'weather = ["wet"]'), scene)
-    assert (row["verdict"], row["reason_code"], row["n_judged"]) == ("unknown", "weather_unknown", 2)
-
-
-@pytest.mark.ci
-def test_only_the_steps_at_which_a_condition_holds_are_judged(tmp_path: Path) -> None:
-    wet = ["dry", "wet", "wet", "wet", "dry", "dry", "dry", "wet"]
-    rows = verdicts(invariant(tmp_path, 'weather = ["wet"]'), drive([9, 12, 9, 12, 9, 9, 9, 12], weather=wet))
-    assert [(r["verdict"], r["t_start_ns"], r["t_end_ns"], r["n_expected"]) for r in rows] == [
-        ("fail", 10**8, 3 * 10**8, 3), ("pass", 7 * 10**8, 7 * 10**8, 1),
-    ]  # fmt: skip
-
-
 # ---- the automated driver's engagement
-
-
-def test_what_the_human_did_is_not_judged(tmp_path: Path) -> None:
-    """Steps 0 to 2 and 5 to 7 are driven by hand: what fails there is nobody's finding."""
-    engaged = [False, False, False, True, True, False, False, False, True, True]
-    scene = drive([9, 9, 9, 12, 12, 9, 9, 9, 12, 9], engaged=engaged)
-    rule = invariant(tmp_path)
-    rows = verdicts(rule, scene)
-    assert [(r["verdict"], r["t_start_ns"], r["t_end_ns"], r["n_expected"]) for r in rows] == [
-        ("pass", 3 * 10**8, 4 * 10**8, 2), ("fail", 8 * 10**8, 9 * 10**8, 2),
-    ]  # fmt: skip
-    assert [(f["t_start_ns"], f["t_end_ns"]) for f in findings(rule, scene)] == [(9 * 10**8, 9 * 10**8)]
-
-
-def test_where_it_is_not_known_who_drove_a_failure_is_unknown(tmp_path: Path) -> None:
-    scene = drive([9, 12, 12], engaged=[None, True, True])
-    (row,) = verdicts(invariant(tmp_path), scene)
-    assert (row["verdict"], row["reason_code"], row["n_judged"]) == ("unknown", "engaged_unknown", 2)
-    assert findings(invariant(tmp_path), scene) == []
-
-
-def test_objects_beside_a_human_are_not_judged(tmp_path: Path) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | PAIR, {"condition": PAIR_SQL})
-    times = [0.0, 0.1, 0.2, 0.3]
-    scene = {
-        "step": {"t_s": times},
-        "pair": [{"t_s": times, "object_id": who, "clearance_m": [0, 2, 2, 2]} for who in "ab"],
-        "ego_condition": {"t_s": times, "engaged": [False, True, True, True]},
-        "lost_object": {"object_id": "c", "t_from_s": 0.0, "t_to_s": 0.3, "code": "lost_near_ego"},
-    }
-    assert [(r["object_id"], r["verdict"], r["n_expected"]) for r in verdicts(rule, scene)] == [
-        ("a", "pass", 3), ("b", "pass", 3),
-    ]  # fmt: skip
-    scene["ego_condition"] = {"t_s": times, "engaged": [True, True, True, False]}
-    assert [(r["object_id"], r["verdict"]) for r in verdicts(rule, scene)] == [
-        ("a", "fail"), ("b", "fail"), ("c", "unknown"),
-    ]  # fmt: skip
-
-
-def test_one_ego_by_hand_leaves_the_others_alone(tmp_path: Path) -> None:
-    """Also a reference time that is no step: unknown only for the ego of which there is something to know."""
-    scene = {
-        "ego_state": [{"ego_id": e, "t_s": [0.0, 0.1, 0.2], "speed_mps": [9, 12, 12]} for e in "ab"],
-        "ego_condition": {"ego_id": "a", "t_s": [0.0, 0.1, 0.2], "engaged": [False, True, True]},
-        "exit_taken": [{"ego_id": e, "t_s": 0.15} for e in "ab"],
-    }
-    assert [(r["ego_id"], r["verdict"], r["n_expected"]) for r in verdicts(invariant(tmp_path), scene)] == [
-        ("a", "pass", 2), ("b", "fail", 3),
-    ]  # fmt: skip
-    assert [(r["ego_id"], r["reason_code"]) for r in verdicts(at_event(tmp_path), scene)] == [
-        ("a", "engaged_unknown"), ("b", "missing_step"),
-    ]  # fmt: skip
 
 
 @pytest.mark.sample(2, ci=3)
@@ -311,21 +196,3 @@ def test_a_window_in_which_the_human_takes_over(
     kind = AFTER | {"window_s": "0.2", "quantifier": f'"{quantifier}"'}
     rule = at_event(tmp_path, kind=kind)
     assert brief(verdicts(rule, drive(speeds, at=0.1, engaged=engaged))) == [expected]
-
-
-@pytest.mark.ci
-def test_an_anchor_that_the_human_drove_past_is_unknown(tmp_path: Path) -> None:
-    rule = at_event(tmp_path, kind=PLACE_BEFORE, anchor="SELECT ref_id, t_ns - 200000000 AS t_ns FROM reference")
-    for engaged, expected in ((True, ("pass", "kept")), (False, ("unknown", "not_engaged"))):
-        scene = drive([12, 12, 12], at=0.2, engaged=[engaged, True, True])
-        assert brief(verdicts(rule, scene)) == [expected]
-
-
-@pytest.mark.ci
-def test_nobody_beside_a_human_is_not_claimed(tmp_path: Path) -> None:
-    reads = {"reads": '["exit_taken", "pair"]', "combine": '"all"', "window_s": "0.1"}
-    rule = write(tmp_path, AFTER | MEASURED | reads, {"reference": REFERENCE, "condition": PAIR_SQL})
-    scene: dict[str, Any] = {"step": {"t_s": [0.0, 0.1, 0.2]}, "exit_taken": {"t_s": 0.1}}
-    assert brief(verdicts(rule, scene)) == [("pass", "nobody_there")]
-    scene["ego_condition"] = {"t_s": [0.0, 0.1, 0.2], "engaged": [True, True, False]}
-    assert brief(verdicts(rule, scene)) == [("unknown", "not_engaged")]

@@ -41,17 +41,6 @@ def scene(signal: Any, at: Any, times: Any = "0..4 by 0.1", **more: Any) -> dict
 # ---- executions
 
 
-def test_execution_is_judged_at_each_reference_point(tmp_path: Path) -> None:
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, {"reference": REFERENCE, "condition": SPEED})
-    rows = verdicts(rule, scene("off", [3.0, 1.0], speed_mps={"else": 12, "3": 9}))
-    assert [(r["verdict"], r["ref_id"], r["t_ref_ns"], r["occurrence"], r["margin"]) for r in rows] == [
-        ("pass", 0, 10**9, 0, 2.0), ("fail", 1, 3 * 10**9, 1, -1.0),
-    ]  # fmt: skip
-    assert all((r["n_expected"], r["n_judged"]) == (1, 1) for r in rows)
-    (finding,) = findings(rule, scene("off", [3.0, 1.0], speed_mps={"else": 12, "3": 9}))
-    assert (finding["ref_id"], finding["t_worst_ns"]) == (1, 3 * 10**9)
-
-
 @pytest.mark.parametrize(
     ("speed", "at", "expected"),
     [
@@ -81,23 +70,6 @@ def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[s
     assert brief(verdicts(rule, scene("off", 2.0, in_junction=applies))) == [expected]
 
 
-@pytest.mark.ci
-def test_the_references_object_goes_into_the_row(tmp_path: Path) -> None:
-    sections = {
-        "reference": "SELECT drive_id, ego_id, t_ns, lanelet_id AS object_id FROM exit_taken",
-        "condition": SPEED,
-    }
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, sections)
-    given = scene("off", 2.0)
-    given["exit_taken"] = {"t_s": [2.0, 2.0], "lanelet_id": ["b", "a"]}
-    assert [(r["object_id"], r["ref_id"], r["occurrence"]) for r in verdicts(rule, given)] == [("a", 0, 0), ("b", 1, 0)]
-
-
-def test_header_names_the_event_table(tmp_path: Path) -> None:
-    rule = write(tmp_path, EXECUTION | MEASURED | READS | {"reference": '"exit_taken"'}, {"condition": SPEED})
-    assert brief(verdicts(rule, scene("off", 2.0))) == [("pass", "kept")]
-
-
 PAIR = {"reads": '["exit_taken", "pair"]'}
 PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1 AS required FROM pair"
 
@@ -124,64 +96,6 @@ def test_combination_over_objects(
         rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
         got.append([r["verdict"] for r in verdicts(rule, given)])
     assert got == [each, [every], [some]]
-
-
-def test_nobody_there_is_not_known_beyond_sensor_range(tmp_path: Path) -> None:
-    given = {
-        "step": {"t_s": [0, 1, 2]},
-        "exit_taken": {"t_s": 1.0},
-        "data_log": {"sensor_range_m": 80.0, "sha256": "x"},
-    }
-    header = EXECUTION | MEASURED | PAIR | {"combine": '"all"'}
-    rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
-    assert brief(verdicts(rule, given)) == [("unknown", "beyond_sensor_range")]
-
-
-@pytest.mark.ci
-def test_combination_names_the_deciding_object(tmp_path: Path) -> None:
-    given = {
-        "step": {"t_s": [0, 1, 2]},
-        "exit_taken": {"t_s": 1.0},
-        "pair": {"t_s": 1.0, "object_id": ["a", "b", "c"], "clearance_m": [5, 2, 3]},
-    }
-    for combine, who in (("all", "b"), ("any", "a")):
-        header = EXECUTION | MEASURED | PAIR | {"combine": f'"{combine}"'}
-        rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
-        (row,) = verdicts(rule, given)
-        assert (row["object_id"], row["verdict"]) == (who, "pass")
-
-
-@pytest.mark.ci
-def test_a_failed_verdict_names_its_findings(tmp_path: Path) -> None:
-    """Of each object, or of all together; also of those that are about another object than the worst."""
-    given = {
-        "step": {"t_s": [0, 1, 2, 3]},
-        "exit_taken": {"t_s": [0.0]},
-        "pair": {"t_s": [1.0, 1.0, 3.0, 3.0], "object_id": ["a", "b", "a", "b"], "clearance_m": [-3, 2, 4, -1]},
-    }
-    for combine, failed in (("each", [["a"], ["b"]]), ("all", [["a", "b"]])):
-        header = AFTER | MEASURED | PAIR | {"combine": f'"{combine}"', "window_s": "3.5", "merge_gap_s": "0"}
-        rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
-        about = {found["finding_id"]: found["object_id"] for found in findings(rule, given)}
-        rows = verdicts(rule, given)
-        assert [row["verdict"] for row in rows] == ["fail"] * len(failed)
-        assert [[about[name] for name in row["finding_ids"]] for row in rows] == failed
-
-
-@pytest.mark.ci
-def test_two_rows_for_one_object_are_refused_also_where_objects_are_combined(tmp_path: Path) -> None:
-    sql = PAIR_SQL + " UNION ALL SELECT drive_id, ego_id, t_ns, 'a', 9, 1 FROM pair WHERE object_id = 'a'"
-    given = {
-        "step": {"t_s": [0, 1, 2]},
-        "exit_taken": {"t_s": 1.0},
-        "pair": {"t_s": 1.0, "object_id": ["a", "b"], "clearance_m": 5},
-    }
-    for combine in ("each", "all"):
-        header = EXECUTION | MEASURED | PAIR | {"combine": f'"{combine}"'}
-        rule = write(tmp_path, header, {"reference": REFERENCE, "condition": sql}, name=combine)
-        (row,) = verdicts(rule, given)
-        assert row["verdict"] == "error"
-        assert "2 rows for one step" in row["reason"]
 
 
 # ---- temporal windows
@@ -234,14 +148,6 @@ def test_eventually_in_a_temporal_postcondition(
     assert len(findings(rule, scene(signal, at))) == (expected[0] == "fail")
 
 
-def test_eventually_takes_the_best_step(tmp_path: Path) -> None:
-    rule = write(tmp_path, AFTER | MEASURED | READS | EVENTUALLY, {"reference": REFERENCE, "condition": SPEED})
-    (row,) = verdicts(rule, scene("off", 2.0, speed_mps={"else": 3, "2.3": 11, "2.5..2.6": 12}))
-    assert (row["verdict"], row["t_worst_ns"], row["margin"]) == ("pass", 2_500_000_000, 2.0)
-    (row,) = verdicts(rule, scene("off", 2.0, speed_mps={"else": 3, "2.5..2.6": 9}))
-    assert (row["verdict"], row["t_worst_ns"], row["margin"]) == ("fail", 2_500_000_000, -1.0)
-
-
 HOLED = [i / 10 for i in range(12)] + [i / 10 for i in range(17, 41)]
 
 
@@ -258,37 +164,6 @@ HOLED = [i / 10 for i in range(12)] + [i / 10 for i in range(17, 41)]
 def test_a_hole_in_the_window(tmp_path: Path, at: float, signal: Any, expected: tuple[str, str]) -> None:
     rule = write(tmp_path, BEFORE | HOLDS | READS, {"reference": REFERENCE, "condition": SIGNAL})
     assert brief(verdicts(rule, scene(signal, at, HOLED))) == [expected]
-
-
-@pytest.mark.ci
-def test_a_window_wholly_outside_the_log(tmp_path: Path) -> None:
-    rule = write(tmp_path, AFTER | HOLDS | READS, {"reference": REFERENCE, "condition": SIGNAL})
-    (row,) = verdicts(rule, scene("left", 9.0))
-    assert (row["verdict"], row["reason_code"], row["n_expected"]) == ("unknown", "window_truncated", 0)
-    assert "s, and the log has the ego from 0.000 s to " in row["reason"]
-
-
-@pytest.mark.ci
-def test_the_window_may_be_a_parameter(tmp_path: Path) -> None:
-    params = '[params.ahead_s]\ndefault = 1\nunit = "s"\nwhy = "a test"'
-    rule = write(
-        tmp_path,
-        BEFORE | HOLDS | READS | {"window_s": '"ahead_s"'},
-        {"reference": REFERENCE, "condition": SIGNAL},
-        tables=params,
-    )
-    given = scene({"else": "left", "0.5": "off"}, 2.0)
-    assert brief(verdicts(rule, given)) == [("pass", "kept")]
-    assert brief(verdicts(rule, given, params={"ahead_s": 1.5})) == [("fail", "violated")]
-
-
-@pytest.mark.ci
-def test_many_windows_at_any_offset(tmp_path: Path) -> None:
-    """Time buckets are an optimisation: every window sees exactly its steps, also where it straddles time zero."""
-    rule = write(tmp_path, BEFORE | HOLDS | READS | {"window_s": "0.7"}, {"reference": REFERENCE, "condition": SIGNAL})
-    at = [round(-2.0 + i * 0.3, 1) for i in range(20)]
-    rows = verdicts(rule, scene("left", at, "-3..5 by 0.1"))
-    assert [(r["verdict"], r["n_expected"]) for r in rows] == [("pass", 8)] * 20
 
 
 # ---- physical
@@ -342,104 +217,3 @@ def test_several_anchors_go_by_the_quantifier(
         (row,) = verdicts(rule, given)
         got.append(row["verdict"])
     assert got == [always, eventually]
-
-
-@pytest.mark.ci
-def test_references_of_two_drives_do_not_mix(tmp_path: Path) -> None:
-    rule = write(
-        tmp_path, PLACE_BEFORE | HOLDS | READS, {"reference": PLACE_REFERENCE, "anchor": ANCHOR, "condition": SIGNAL}
-    )
-    given = {
-        "ego_state": [{"drive_id": d, "t_s": "0..4 by 0.1", "indicator": s} for d, s in (("a", "left"), ("b", "off"))],
-        "exit_taken": [{"drive_id": d, "t_s": [2.0, 3.0], "t_sign_s": [1.0, 1.5], "side": "left"} for d in ("a", "b")],
-    }
-    rows = verdicts(rule, given)
-    assert [(r["drive_id"], r["ref_id"], r["verdict"]) for r in rows] == [
-        ("a", 0, "pass"),
-        ("a", 1, "pass"),
-        ("b", 0, "fail"),
-        ("b", 1, "fail"),
-    ]
-
-
-def test_profiles_at_a_reference_point(tmp_path: Path) -> None:
-    sql = """SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, p.profile, 10 AS observed, p.pull_out_headroom_m AS required
-        FROM reference r CROSS JOIN profile p WHERE p.selected AND p.profile <> 'lost'"""
-    rule = write(
-        tmp_path,
-        EXECUTION | MEASURED | {"reads": '["exit_taken", "profile"]'},
-        {"reference": REFERENCE, "condition": sql},
-    )
-    given = scene("off", 2.0) | {
-        "profile": {"profile": ["lost", "hard", "easy"], "pull_out_headroom_m": [1, 15, 5], "selected": True}
-    }
-    assert [(r["profile"], r["verdict"], r["reason_code"]) for r in verdicts(rule, given)] == [
-        ("easy", "pass", "kept"), ("hard", "fail", "violated"), ("lost", "unknown", "missing_step"),
-    ]  # fmt: skip
-
-
-@pytest.mark.ci
-def test_a_window_over_objects(tmp_path: Path) -> None:
-    header = BEFORE | MEASURED | PAIR
-    rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
-    times = "0..3 by 0.1"
-    given = {
-        "step": {"t_s": times},
-        "exit_taken": {"t_s": 2.0},
-        "pair": [
-            {"t_s": times, "object_id": "a", "clearance_m": {"else": 3, "1.5": 2}},
-            {"t_s": "1.6..3 by 0.1", "object_id": "b", "clearance_m": 0},
-        ],
-    }
-    rows = verdicts(rule, given)
-    assert [(r["object_id"], r["verdict"], r["n_expected"], r["t_worst_ns"]) for r in rows] == [
-        ("a", "pass", 11, 1_500_000_000),
-        ("b", "fail", 5, 1_600_000_000),
-    ]
-
-
-@pytest.mark.ci
-def test_nobody_there_is_no_near_miss_and_loses_to_a_real_step(tmp_path: Path) -> None:
-    header = BEFORE | MEASURED | PAIR | {"combine": '"all"', "near_margin": "0.5"}
-    rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL})
-    given: dict[str, Any] = {"step": {"t_s": "0..3 by 0.1"}, "exit_taken": {"t_s": 2.0}}
-    (row,) = verdicts(rule, given)
-    assert (row["verdict"], row["reason_code"], row["margin"], row["near_miss"]) == (
-        "pass",
-        "nobody_there",
-        None,
-        False,
-    )
-    (row,) = verdicts(rule, given | {"pair": {"t_s": [1.5, 1.6], "object_id": "a", "clearance_m": [3, 1.2]}})
-    assert (row["verdict"], row["object_id"], row["t_worst_ns"], row["near_miss"]) == ("pass", "a", 1_600_000_000, True)
-
-
-@pytest.mark.parametrize(
-    ("combine", "expected"),
-    [
-        ("each", [("a", "pass", "kept"), ("b", "unknown", "lost_near_ego")]),
-        ("all", [("b", "unknown", "lost_near_ego")]),
-        ("any", [("a", "pass", "kept")]),
-    ],
-)
-def test_an_object_that_was_lost_may_still_be_there(
-    tmp_path: Path, combine: str, expected: list[tuple[str, str, str]]
-) -> None:
-    rule = write(
-        tmp_path,
-        BEFORE | MEASURED | PAIR | {"combine": f'"{combine}"'},
-        {"reference": REFERENCE, "condition": PAIR_SQL},
-    )
-    times = "0..3 by 0.1"
-    given = {
-        "step": {"t_s": times},
-        "exit_taken": {"t_s": 2.0},
-        "pair": [
-            {"t_s": times, "object_id": "a", "clearance_m": 3},
-            {"t_s": "0..1.5 by 0.1", "object_id": "b", "clearance_m": 5},
-        ],
-        "lost_object": {"object_id": "b", "t_from_s": 1.5, "t_to_s": 3, "code": "lost_near_ego"},
-    }
-    rows = verdicts(rule, given)
-    assert [(r["object_id"], r["verdict"], r["reason_code"]) for r in rows] == expected
-    assert rows[-1]["n_expected"] == 11

@@ -10,59 +10,10 @@ import pytest
 from drivelint.errors import DriveLintError
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import Derivation, _tables_read_tables_needed_and_occasion, derivations
+from tests.sql.lines import expected_by_select
 
 TABLES = ("a", "b", "c")
-NEEDS = {
-    "FROM a": "a",
-    "SELECT 1": "",
-    "SELECT * FROM (VALUES (1)) v": "",
-    "SELECT * FROM range(3)": "",
-    "SELECT unnest([1, 2]) FROM a": "a",
-    "SELECT a.x FROM a JOIN b USING (x)": "a b",
-    "SELECT a.x FROM a, b CROSS JOIN c": "a b c",
-    "SELECT a.x FROM a LEFT JOIN b USING (x) JOIN c USING (x)": "a c",
-    "SELECT a.x FROM a RIGHT JOIN b USING (x)": "",  # b, but we have no such join
-    "SELECT a.x FROM a FULL JOIN b USING (x)": "",
-    "SELECT a.x FROM a POSITIONAL JOIN b": "",
-    "FROM a SEMI JOIN b USING (x)": "a b",
-    "FROM a ANTI JOIN (SELECT x + 1 AS x FROM b) USING (x)": "a",
-    "SELECT a.x FROM a ASOF JOIN b ON a.x >= b.x": "a b",
-    "SELECT a.x FROM a ASOF LEFT JOIN b ON a.x >= b.x": "a",
-    "SELECT x FROM a WHERE EXISTS (FROM b)": "a",  # b too, which would only save time
-    "SELECT x FROM a UNION ALL SELECT x FROM b": "",
-    "SELECT x FROM a JOIN c USING (x) UNION ALL BY NAME SELECT x FROM b JOIN c USING (x)": "c",
-    "FROM a EXCEPT SELECT x + 1 FROM b": "",  # a
-    "WITH w AS (SELECT a.x FROM a JOIN b USING (x)), v AS (FROM w) SELECT v.x FROM v LEFT JOIN c USING (x)": "a b",
-    "WITH a AS (FROM b) FROM a": "b",
-    "WITH b AS (FROM a) SELECT * FROM (WITH a AS (FROM c) FROM a JOIN b USING (x))": "a c",
-    "WITH RECURSIVE w AS (SELECT x FROM a UNION ALL SELECT w.x + 1 FROM w, b WHERE w.x < 3) FROM w": "a",
-    "WITH RECURSIVE w AS (SELECT x FROM a UNION SELECT x FROM b) FROM w": "",
-    "SELECT count(*) FROM a": "",
-    "SELECT max(x) + 1 FROM a": "",
-    "SELECT 1 FROM a HAVING count(*) >= 0": "",
-    "SELECT count(*) OVER () FROM a": "a",
-    "SELECT x, count(*) FROM a GROUP BY x": "a",
-    "SELECT count(*) FROM a GROUP BY x": "a",
-    "SELECT count(*) FROM a GROUP BY ()": "",
-    "SELECT count(*) FROM a GROUP BY ROLLUP (x)": "",
-    "SELECT x, count(*) FROM a GROUP BY ALL": "a",
-    "SELECT count(*) FROM a GROUP BY ALL": "",
-    "SELECT b.x FROM b JOIN (SELECT count(*) AS n FROM a) ON true": "b",
-    "SELECT DISTINCT x FROM a ORDER BY x LIMIT 1": "a",
-    "WITH A AS (SELECT 7 AS x) FROM a": "",
-    "WITH a AS (FROM b) FROM main.a": "a",
-    "SELECT x FROM B": "b",
-    "SELECT 1 FROM a HAVING true": "",
-    "SELECT 1 FROM a ORDER BY count(*)": "",
-    "SELECT DISTINCT ON (count(*)) 1 FROM a": "",
-    "SELECT 1 FROM a QUALIFY row_number() OVER (ORDER BY count(*)) = 1": "",
-    "SELECT count(*) AS n, n FROM a GROUP BY ALL": "",
-    "SELECT 5 AS k, k, count(*) FROM a GROUP BY ALL": "",
-    "SELECT l.n FROM b, LATERAL (SELECT b.x, count(*) AS n FROM a GROUP BY ALL) l": "b",
-    "SELECT geomean(x) FROM a": "",
-    "SELECT wavg(x, x) FROM a": "",
-    "SELECT b.x FROM b JOIN (SELECT x, count(*) AS n FROM a GROUP BY x) USING (x)": "a b",
-}
+NEEDS, OCCASIONS, NO_OCCASIONS = map(expected_by_select, ("needs", "occasions", "no_occasions"))
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +27,7 @@ def con() -> duckdb.DuckDBPyConnection:
 @pytest.mark.parametrize("sql", NEEDS)
 def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBPyConnection, sql: str) -> None:
     needs = syntax.tables_needing_rows(syntax.parse_select(sql, "here"))
-    assert needs == set(NEEDS[sql].split())
+    assert needs == NEEDS[sql]
     assert con.execute(sql).fetchall()
     for table in needs:
         con.execute(f"BEGIN; DELETE FROM {table}")
@@ -84,26 +35,9 @@ def test_a_select_has_no_rows_without_those_of_what_it_needs(con: duckdb.DuckDBP
         con.execute("ROLLBACK")
 
 
-OCCASIONS = {
-    "WITH p AS (FROM a) FROM p": "p",
-    "WITH p AS (FROM a), q AS (FROM b) FROM p UNION ALL FROM q": "p q",
-    "WITH p AS (FROM a), q AS (SELECT * FROM p LEFT JOIN b USING (x)) SELECT x, count(*) AS n FROM q GROUP BY x": "p",
-    "WITH p AS (FROM a) FROM b SEMI JOIN p USING (x)": "p",
-}
-NO_OCCASIONS = {
-    "WITH p AS (FROM a), q AS (FROM b) FROM p UNION ALL FROM q": "p",
-    "WITH p AS (FROM a) FROM b LEFT JOIN p USING (x)": "p",
-    "WITH p AS (FROM a) SELECT count(*) FROM p": "p",
-    "WITH p AS (FROM a) SELECT x FROM b WHERE NOT EXISTS (FROM p)": "p",
-    "WITH p AS (FROM a) SELECT * FROM (WITH p AS (FROM b) FROM p) JOIN a USING (x)": "p",
-    "WITH p AS (FROM a) FROM main.b": "p",
-    "FROM a": "p",
-}
-
-
 @pytest.mark.parametrize("sql", OCCASIONS)
 def test_a_select_has_no_rows_without_those_of_its_occasion(con: duckdb.DuckDBPyConnection, sql: str) -> None:
-    ctes = OCCASIONS[sql].split()
+    ctes = OCCASIONS[sql]
     assert syntax.has_no_rows_without(syntax.parse_select(sql, "here"), frozenset(ctes))
     assert con.execute(sql).fetchall()
     for cte in ctes:
@@ -113,7 +47,7 @@ def test_a_select_has_no_rows_without_those_of_its_occasion(con: duckdb.DuckDBPy
 
 @pytest.mark.parametrize("sql", NO_OCCASIONS)
 def test_a_cte_without_which_there_may_be_rows_is_no_occasion(sql: str) -> None:
-    assert not syntax.has_no_rows_without(syntax.parse_select(sql, "here"), frozenset(NO_OCCASIONS[sql].split()))
+    assert not syntax.has_no_rows_without(syntax.parse_select(sql, "here"), frozenset(NO_OCCASIONS[sql]))
 
 
 OF_DERIVATIONS = [step for step in derivations().values() if step.occasion]

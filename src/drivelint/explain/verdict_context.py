@@ -47,10 +47,6 @@ class VerdictContext:
         with store.temporary_database(self.memory, threads=1 if have_few_states(drives) else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
-    def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
-        """Return the verdict on the single drive in a sandbox. `params`: None for the parameters of the run."""
-        return self.verdicts_on(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
-
     def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in the same order."""
         wanted, about = self.target.verdict_row, ["ego_id", "profile"]
