@@ -129,7 +129,8 @@ class Judged:
             names = [name for name in SPANS if (name in FIRST_SPANS) == first]
             for row in scenes.judged(drives(names), rules=RULES, profiles=PROFILES):
                 self.by_drive[row["drive_id"]].append(row)
-            self._left.remove(first)  # not before: where the reference data are absent, every test skips, not the first alone
+            # not before: where the reference data are absent, every test skips, not the first alone
+            self._left.remove(first)
         rows = [row for row in self.by_drive[case.name] if row["rule_id"] in rules]
         assert {row["rule_id"] for row in rows} == set(rules)
         return rows

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from drivelint.audit.compact import open_database
 from drivelint.fleet_report import audit_views
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
@@ -32,7 +33,6 @@ def test_no_statement_compares_all_rows_with_all(
     }
     found: list[Loop] = []
     looked_at: list[str] = []
-    open_database = audit_views.open_database
 
     @contextmanager
     def explained() -> Iterator[Any]:

@@ -205,11 +205,8 @@ def open_without_creating_tables(path: Path | None = None, *, read_only: bool = 
     which is not verified either. Afterwards, any other extension must be signed. Errors: `DriveLintError` if the pinned extension cannot
     be loaded.
     """
-    con = duckdb.connect(
-        str(path) if path else ":memory:",
-        read_only=read_only,
-        config=dict.fromkeys(_NEVER_ALLOWED, False) | {"allow_unsigned_extensions": True},
-    )
+    config: dict[str, Any] = dict.fromkeys(_NEVER_ALLOWED, False) | {"allow_unsigned_extensions": True}
+    con = duckdb.connect(str(path) if path else ":memory:", read_only=read_only, config=config)
     _load_spatial(con)
     con.execute("SET allow_unsigned_extensions=false")
     return con
