@@ -6,6 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import duckdb
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -276,6 +277,25 @@ def test_a_time_beyond_the_nanoseconds_of_64_bits_is_a_lost_row(tmp_path: Path, 
     pq.write_table(pa.table(rows), tmp_path / "d.parquet")
     trace = read(tmp_path / "d.parquet", mapping=mapping(tmp_path))
     assert [row["t_ns"] for row in states(trace)] == [i * 10**9 for i in range(1, n)]
+    assert quality(trace)["dropped_row"]["n"] == 1
+
+
+@pytest.mark.parametrize("kind", ["TIMESTAMP_S", "TIMESTAMP_MS", "TIMESTAMP", "TIMESTAMP_NS", "TIMESTAMPTZ"])
+def test_a_time_column_of_duckdb_has_the_unit_of_its_type(tmp_path: Path, kind: str) -> None:
+    """A row without a time is lost, it does not move.
+
+    Source: seen with rerun-sdk 0.41.0, which takes each of them for nanoseconds (findings/rerun-parquet-column-without-its-unit.sh).
+    """
+    begin = 1_793_534_400  # 1 November 2026, 12:00 UTC
+    time = "CASE WHEN i <> 7 THEN TIMESTAMP '2026-11-01 12:00:00' + to_seconds(i) END"
+    names = "'a' AS id, 10.0 * i AS x, 0.0 AS y, 0.0 AS yaw, 10.0 AS vx, 0.0 AS vy"
+    with duckdb.connect() as connection:
+        connection.execute("SET TimeZone = 'UTC'")
+        rows = f"SELECT CAST({time} AS {kind}) AS t, {names} FROM range(40) AS row(i)"
+        connection.execute(f"COPY ({rows}) TO '{tmp_path / 'd.parquet'}' (FORMAT parquet)")
+    trace = read(tmp_path / "d.parquet", mapping=mapping(tmp_path))
+    seen = [(row["t_ns"], row["x_m"]) for row in states(trace)]
+    assert seen == [((begin + i) * 10**9, 10.0 * i) for i in range(40) if i != 7]
     assert quality(trace)["dropped_row"]["n"] == 1
 
 
