@@ -1,4 +1,4 @@
-"""What small rules say of small scenes: the files of `tests/evaluate/said`.
+"""What small rules say of small scenes: the files of `tests/evaluate/small_rules`.
 
 A file has rules by name and cases. `rule` names one of them, and `with` changes it: lines of its header, its sections, and of its
 condition the further `columns`, the condition `where` of its rows, and what it is in `union` with; `reference table` is the line of the
@@ -23,7 +23,7 @@ from tests.evaluate.packs import Row, findings, verdicts, write
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-FILES: Final = sorted((Path(__file__).parent / "said").glob("*.yml"))
+FILES: Final = sorted((Path(__file__).parent / "small_rules").glob("*.yml"))
 SECTIONS: Final = ("applies", "reference", "anchor", "condition")
 MARKS: Final = {"ci": [pytest.mark.ci], "quick": []}
 CASES: Final = [
