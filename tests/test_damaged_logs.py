@@ -121,7 +121,7 @@ def test_a_judged_step_that_fails_stands(tmp_path: Path, at: int) -> None:
     ("damage", "code", "told"),
     [
         (lambda _: b"", 4, "the file is empty"),
-        (lambda _: b"<html>404 Not Found</html>", 4, "begins b'<html>404 Not Found"),
+        (lambda _: b"<html>404 Not Found</html>", 4, "begins b'<html>40' at byte 0"),
         (lambda data: data[: len(data) // 2], 3, "cannot be read"),
         (lambda data: data[: places(data, FOOTER)[0][0]], 0, "nothing is lost"),
         (lambda data: data[: len(data) // 2] + bytes(len(data) // 2), 3, "cannot be read"),

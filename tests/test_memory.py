@@ -94,8 +94,12 @@ def crowded(crowd: tuple[Path, Path], **options: Any) -> CheckOptions:
 
 
 @pytest.mark.slow
-def test_any_limit_gives_the_same_files(crowd: tuple[Path, Path], tmp_path: Path, halved: list[int]) -> None:
+def test_any_limit_gives_the_same_files(
+    crowd: tuple[Path, Path], tmp_path: Path, halved: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first parts are 20 times as large as usual: those of the usual size do with the least memory."""
     asked: dict[str, Any] = {"rules": ("ukhc",), "margins": True}
+    monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", 20 * batch.EGO_ACTOR_PAIRS_PER_PART)
     usual = files(crowded(crowd, out=tmp_path / "a", memory=None, **asked))
     assert not halved
     for no, limit in enumerate(

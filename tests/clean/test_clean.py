@@ -33,6 +33,7 @@ NOT_KEPT = {
     "declared.r202.checks-before-reversing": "it never reverses",
     "stvo.ri2": "nobody is passed on the inner side",
     "stvo.s4-truck": "for heavy vehicles",
+    "alks-r157.cut-in": "nobody slower than the ego cuts in: see the scenes",
     "alks-r157.emergency": "no emergency",
     "alks-r157.mrm": "no minimal risk manoeuvre",
     "alks-r157.mrm-hazards": "no minimal risk manoeuvre",

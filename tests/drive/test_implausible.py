@@ -112,6 +112,27 @@ def test_swapped_sizes_of_who_moves_are_exchanged(tmp_path: Path, heading: float
     assert not doubts(trace)
 
 
+@pytest.mark.parametrize(
+    ("actor_class", "sides", "exchanged"),
+    [
+        ("bicycle", (0.6, 1.8), True),
+        ("animal", (0.8, 2.4), True),
+        # the box of a rider's body alone
+        ("bicycle", (0.5, 1.2), False),
+        # it may be a barrier on a trolley
+        (None, (0.8, 2.4), False),
+    ],
+)
+def test_swapped_sizes_of_slim_bodies(
+    tmp_path: Path, actor_class: str | None, sides: tuple[float, float], exchanged: bool
+) -> None:
+    body = track(5.0, actor_class=actor_class, length_m=sides[0], width_m=sides[1])
+    trace = drive(tmp_path, body=body)
+    found = actor(trace, "body")["length_m"], actor(trace, "body")["width_m"]
+    assert found == (sides[::-1] if exchanged else sides)
+    assert ("size_turned" in checks(trace)) is exchanged
+
+
 def test_swapped_sizes_of_who_stands_are_unknown(tmp_path: Path) -> None:
     trace = drive(tmp_path, car=track(0.0, length_m=1.8, width_m=4.5))
     assert (actor(trace, "car")["length_m"], actor(trace, "car")["width_m"]) == (None, None)

@@ -225,10 +225,12 @@ def main() -> NoReturn:
     except Exception as error:  # noqa: BLE001 - Python's exit code for it would be 1, which means a failed rule
         import traceback
 
-        if (told := describe_machine_error(error)) is not None:
-            _exit_with_error(*told)
-        streams.print_on_stderr(terminal_safe(traceback.format_exc().rstrip()))
-        _exit_with_error(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
+        if not ending_signals.is_any_recorded():
+            if (told := describe_machine_error(error)) is not None:
+                _exit_with_error(*told)
+            streams.print_on_stderr(terminal_safe(traceback.format_exc().rstrip()))
+            _exit_with_error(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
+        code = ExitCode.INTERRUPTED  # for example an import that the signal ended
     if code == ExitCode.INTERRUPTED:
         streams.print_on_stderr("drivelint: error: interrupted")
         temporary.remove_all()

@@ -1,7 +1,8 @@
 """Signal handlers: Ctrl-C, SIGTERM and SIGHUP end a command, whatever its main thread is doing.
 
 Python's handler raises `KeyboardInterrupt` at the current statement of the main thread. In a callback of an import or of the garbage
-collector, Python only prints this error and continues; within a library's locking code, it leaves the lock locked. So the handlers here
+collector, Python only prints this error and continues; an extension module that is being imported makes an `ImportError` of it; within a
+library's locking code, it leaves the lock locked. So the handlers here
 also record each signal. While another thread works, they only record it: the main thread polls the record while it waits.
 """
 
@@ -29,6 +30,11 @@ def install_handlers() -> None:
         number = getattr(signal, name, None)
         if number is not None and (name == "SIGTERM" or signal.getsignal(number) is not signal.SIG_IGN):
             signal.signal(number, _raise_interrupt)
+
+
+def is_any_recorded() -> bool:
+    """Return whether a signal came since `install_handlers`, even if its exception was lost or became another one."""
+    return bool(_recorded_signals)
 
 
 @contextmanager

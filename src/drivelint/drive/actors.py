@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 ELONGATED_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
 """Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
+SLIM_CLASSES: Final = frozenset({"bicycle", "motorcycle", "animal"})
+MOST_SLIM_WIDTH_M: Final = 1.2
+"""A two-wheeler or a horse that is wider than this, and wider than long, is not the box of a rider's body: its sides are exchanged."""
 MOST_WIDTH_PER_LENGTH: Final = 1.1
 """A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
 LEAST_SPEED_WITH_DIRECTION_MPS: Final = 2.0
@@ -145,7 +148,8 @@ def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     """
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in ELONGATED_CLASSES for kind in actors.classes], np.bool_)
-    wide = long_kind & (width > MOST_WIDTH_PER_LENGTH * length)
+    slim_kind = np.array([kind in SLIM_CLASSES for kind in actors.classes], np.bool_)
+    wide = (long_kind | slim_kind & (width > MOST_SLIM_WIDTH_M)) & (width > MOST_WIDTH_PER_LENGTH * length)
     along = np.isin(actors.ids, _actors_moving_along_heading(states)) if wide.any() else wide
     turned, dropped_sizes = wide & along, wide & ~along
     actors.sizes["length_m"] = np.where(turned, width, np.where(dropped_sizes, np.nan, length))
