@@ -13,14 +13,17 @@ import pyarrow.parquet as pq
 import pytest
 from lxml import html
 
+from drivelint.audit.compact import RECEIPT_SCHEMA
+from drivelint.audit.store import LocalFolder
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages, moment_pages
-from drivelint.fleet_report.audit_views import open_audits
+from drivelint.fleet_report.audit_views import Audit, open_audits
 from drivelint.result.counts import one_finding_per_event
+from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
-from tests.fleet_report.told import audit_of, words_of
 from tests.report.synthetic import rule
 
 pytestmark = pytest.mark.ci
@@ -28,21 +31,19 @@ pytestmark = pytest.mark.ci
 SEVERITIES = ("critical", "major", "minor")
 
 
-def without_pages(audit: Path, home: Path) -> Path:
-    """Copy an audit without the pages of drives."""
-    return shutil.copytree(audit, home / "audit", ignore=lambda at, _: ["drives"] if at == str(audit) else [])
-
-
 @pytest.fixture(scope="module")
 def lake_copy(filled: lake.Lake, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a copy of the audit, as other tests write pages into it."""
-    return without_pages(filled.folder, tmp_path_factory.mktemp("pages"))
+    copy = tmp_path_factory.mktemp("pages") / "audit"
+    shutil.copytree(filled.folder, copy, ignore=lambda folder, _: ["drives"] if folder == str(filled.folder) else [])
+    return copy
 
 
 @pytest.fixture(scope="module")
 def ten(lake_copy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a copy with the pages of the ten worst drives; no test writes other pages into it."""
-    copy = without_pages(lake_copy, tmp_path_factory.mktemp("ten"))
+    copy = tmp_path_factory.mktemp("ten") / "audit"
+    shutil.copytree(lake_copy, copy, ignore=lambda folder, _: ["drives"] if folder == str(lake_copy) else [])
     assert ran("report", copy, "--drive-pages", 10).code == 0
     return copy
 
@@ -50,7 +51,7 @@ def ten(lake_copy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def own_ten(ten: Path, tmp_path: Path) -> Path:
     """Return such a copy of a test's own."""
-    return shutil.copytree(ten, tmp_path / "audit")
+    return tmp_path / shutil.copytree(ten, tmp_path / "audit").name
 
 
 def table(audit: Path, name: str) -> list[dict[str, Any]]:
@@ -63,12 +64,20 @@ def pages_in(audit: Path) -> set[str]:
 
 
 def parsed(file: Path) -> Any:
-    return html.fromstring(file.read_bytes())
+    return parsed_bytes(file.read_bytes())
+
+
+def parsed_bytes(page: bytes) -> Any:
+    return html.fromstring(page)
 
 
 def links_of(audit: Path) -> list[str]:
     links: list[str] = parsed(audit / "fleet.html").xpath("//a/@href")
     return [link for link in links if not link.startswith("#")]
+
+
+def words(element: Any) -> str:
+    return " ".join(element.text_content().split())
 
 
 def worst_keys(audit: Path) -> list[str]:
@@ -97,18 +106,18 @@ def test_a_page_says_what_the_tables_say(ten: Path) -> None:
         verdicts = Counter(row["verdict"] for row in table(ten, "verdicts") if row["key"] == key)
         n = Counter(row["severity"] for row in one_finding_per_event(findings))
         said = ", ".join(f"{n[name]} {name}" for name in SEVERITIES if n[name])
-        assert words_of(page.xpath("//h1")[0]) == f"{said} findings in {drive['drive_id']}"
+        assert words(page.xpath("//h1")[0]) == f"{said} findings in {drive['drive_id']}"
         for word in ("pass", "fail", "unknown", "not_applicable", "error"):
-            assert f"{verdicts[word]} {word.replace('_', ' ')}" in words_of(page.find(".//header"))
-        facts = words_of(page.xpath("//dl")[0])
+            assert f"{verdicts[word]} {word.replace('_', ' ')}" in words(page.find(".//header"))
+        facts = words(page.xpath("//dl")[0])
         for value in (drive["log"], drive["sha256"], drive["map_sha256"], key, *dict(drive["tags"]).values()):
             assert value in facts
         rows = page.xpath("//section[@aria-labelledby='findings']//tbody/tr")
-        assert {words_of(row.xpath(".//td//code")[0]) for row in rows} == {row["finding_id"] for row in findings}
+        assert {words(row.xpath(".//td//code")[0]) for row in rows} == {row["finding_id"] for row in findings}
         order = [SEVERITIES.index(row.xpath("string(./td[1]/span)")) for row in rows]
         assert order == sorted(order)
-        assert "-1.00" in words_of(rows[0].xpath("./td[@data-label='margin']")[0])
-        assert f"drivelint check {drive['log']} --map town.xodr --out drives/{drive['drive_id']}" in words_of(page)
+        assert "-1.00" in words(rows[0].xpath("./td[@data-label='margin']")[0])
+        assert f"drivelint check {drive['log']} --map town.xodr --out drives/{drive['drive_id']}" in words(page)
         assert set(page.xpath("//a/@href")) - {"#data", "#main"} == {"../fleet.html"}
 
 
@@ -120,9 +129,10 @@ def test_unknown_verdicts_are_grouped_by_reason(lake_copy: Path) -> None:
     n = Counter(row["reason_code"] for row in verdicts if row["key"] == key)
     page = parsed(lake_copy / drive_pages.page_name(key))
     rows = page.xpath("//section[@aria-labelledby='undecided']//tbody/tr")
-    counted = {words_of(row[0]).partition(" no ")[0]: int(words_of(row[1])) for row in rows}
-    assert counted == {code.replace("_", " "): count for code, count in n.items()}
-    assert "indicator: no indicators" in words_of(page.xpath("//section[@aria-labelledby='data']")[0])
+    assert {words(row[0]).partition(" no ")[0]: int(words(row[1])) for row in rows} == {
+        code.replace("_", " "): count for code, count in n.items()
+    }
+    assert "indicator: no indicators" in words(page.xpath("//section[@aria-labelledby='data']")[0])
 
 
 @pytest.mark.slow
@@ -134,8 +144,8 @@ def test_all_are_all_drives_of_the_audit(lake_copy: Path) -> None:
     (lost, *_) = [row for row in drives if row["status"] != "judged"]
     assert drive_pages.page_name(lost["key"]) in links_of(lake_copy)
     page = parsed(lake_copy / drive_pages.page_name(lost["key"]))
-    assert words_of(page.xpath("//h1")[0]) == f"Could not be judged: {lost['drive_id']}"
-    assert lost["status_reason"] in words_of(page.find(".//header"))
+    assert words(page.xpath("//h1")[0]) == f"Could not be judged: {lost['drive_id']}"
+    assert lost["status_reason"] in words(page.find(".//header"))
 
 
 @pytest.mark.slow
@@ -213,51 +223,71 @@ def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, by
         return dict(drive_pages.pages(through, told, found.rules))
 
 
-def pages_of(drives: list[Any], *rows: Any) -> tuple[Any, dict[str, bytes]]:
-    """Return the content of the fleet page, and the pages of all drives."""
-    with duckdb.connect() as con:
-        audit = audit_of(con, drives, *rows)
-        told = content_.fleet_content(con, audit, None, ())
-        names = drive_pages.choose_drives_and_return_page_names(con, None)
-        assert names == [drive_pages.page_name(drive["drive_id"]) for drive in drives]
-        return told, dict(drive_pages.pages(con, audit, told.rules))
-
-
 def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_run() -> None:
-    same = {"actor_id": None, "n": 1, "t_first_ns": 0, "message": "3 chunks were lost"}
-    note = {"check_id": "gap", "severity": "warning", **same}
+    note = {
+        "check_id": "gap",
+        "severity": "warning",
+        "actor_id": None,
+        "n": 1,
+        "t_first_ns": 0,
+        "message": "3 chunks were lost",
+    }
     lack = {"ego_id": "1", "signal": "brake_light", "reason_code": "missing_brake_light", "reason": "no brake lights"}
-    lossy_drive = ego_drive("a", lossy=True, quality=[note], not_judged=[lack], sha256="same")
-    timeout = said("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s")
-    findings = [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)]
+    drives = [
+        ego_drive("a", lossy=True, quality=[note], not_judged=[lack], sha256="same"),
+        ego_drive("b", sha256="same"),
+    ]
+    verdicts = [
+        said("a", "fail"),
+        said("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
+    ]
     rules = [rule(profiles=[], status="draft"), rule("z-contact", profiles=[])]
-    _, made = pages_of([lossy_drive, ego_drive("b", sha256="same")], [said("a", "fail"), timeout], findings, rules)
-    lossy, whole = (html.fromstring(made[drive_pages.page_name(key)]) for key in "ab")
-    assert "Lossy: parts of the log were lost" in words_of(lossy.find(".//header"))
-    assert "Lossy" not in words_of(whole)
-    data = words_of(lossy.xpath("//section[@aria-labelledby='data']")[0])
+    with duckdb.connect() as con:
+        audits.add_rows(
+            con, drives, verdicts, [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
+        )
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
+        told = content_.fleet_content(con, audit, None, ())
+        assert drive_pages.choose_drives_and_return_page_names(con, None) == [
+            drive_pages.page_name("a"),
+            drive_pages.page_name("b"),
+        ]
+        made = dict(drive_pages.pages(con, audit, told.rules))
+    lossy, whole = (parsed_bytes(made[drive_pages.page_name(key)]) for key in "ab")
+    assert "Lossy: parts of the log were lost" in words(lossy.find(".//header"))
+    assert "Lossy" not in words(whole)
+    data = words(lossy.xpath("//section[@aria-labelledby='data']")[0])
     assert "warning 3 chunks were lost" in data
     assert "missing brake light: no brake lights" in data
     (finding,) = lossy.xpath("//section[@aria-labelledby='findings']//tbody/tr")
-    assert "possible, in 40 of 100 copies" in words_of(finding)
-    assert "draft" in words_of(finding[0])
+    assert "possible, in 40 of 100 copies" in words(finding)
+    assert "draft" in words(finding[0])
     (open_,) = lossy.xpath("//section[@aria-labelledby='undecided']//tbody/tr")
-    assert [words_of(cell) for cell in open_[:2]] == ["rule timeout error", "1"]
-    assert "1 other log of the audit" in words_of(lossy)
-    assert words_of(whole.xpath("//h1")[0]) == "Nothing could be decided: b"
+    assert [words(cell) for cell in open_[:2]] == ["rule timeout error", "1"]
+    assert "1 other log of the audit" in words(lossy)
+    assert words(whole.xpath("//h1")[0]) == "Nothing could be decided: b"
 
 
 def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> None:
-    names, at = ("nominal", "observed"), {"t_start_s": 1.0, "t_worst_s": 1.0}
-    twice = [found("a", profile=name, finding_id=name, **at) for name in names]
-    verdicts = [said("a", "fail", profile=row["profile"]) for row in twice]
-    told, made = pages_of([ego_drive("a")], verdicts, twice, [rule()])
-    page = html.fromstring(made[drive_pages.page_name("a")])
+    twice = [found("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
+    for row in twice:
+        row |= {"t_start_s": 1.0, "t_worst_s": 1.0}
+    with duckdb.connect() as con:
+        audits.add_rows(
+            con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
+        )
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
+        told = content_.fleet_content(con, audit, None, ())
+        drive_pages.choose_drives_and_return_page_names(con, None)
+        ((_, made),) = drive_pages.pages(con, audit, told.rules)
+    page = parsed_bytes(made)
     assert [row["critical"] for row in told.worst] == [1]
-    assert words_of(page.xpath("//h1")[0]) == "1 critical finding in a"
+    assert words(page.xpath("//h1")[0]) == "1 critical finding in a"
     section = page.xpath("//section[@aria-labelledby='findings']")[0]
-    assert words_of(section.xpath("./h2")[0]) == "Findings 1"
-    assert words_of(section.xpath("./p")[0]) == "2 rows, 1 finding: an overtake under two profiles counts once."
+    assert words(section.xpath("./h2")[0]) == "Findings 1"
+    assert words(section.xpath("./p")[0]) == "2 rows, 1 finding: an overtake under two profiles counts once."
     assert len(section.xpath(".//tbody/tr")) == 2
 
 
@@ -281,10 +311,35 @@ def test_markdown_leaves_the_pages_as_they_are(ten: Path) -> None:
 @pytest.mark.slow
 def test_the_baseline_leads_to_the_pages(lake_copy: Path, tmp_path: Path) -> None:
     base = lake.write(tmp_path / "base", 1_200)
-    (file,) = (base.folder / "tables" / "findings").iterdir()
+    found = pq.read_table(base.folder / "tables" / "findings")
     key = worst_keys(lake_copy)[0]
-    pq.write_table(duckdb.from_arrow(pq.read_table(file)).filter(f"key <> '{key}'").to_arrow_table(), file)
+    shutil.rmtree(base.folder / "tables" / "findings")
+    (base.folder / "tables" / "findings").mkdir()
+    pq.write_table(
+        duckdb.from_arrow(found).filter(f"key <> '{key}'").to_arrow_table(),
+        base.folder / "tables" / "findings" / "00000000.parquet",
+    )
     lake.seal_anew(base.folder)
     assert ran("report", lake_copy, "--baseline", base.folder, "--drive-pages", 1).code == 0
     since = parsed(lake_copy / "fleet.html").xpath("//section[@aria-labelledby='since']")[0]
     assert set(since.xpath(".//li/a/@href")) == {drive_pages.page_name(key)}
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("--drive-pages", "some"), "write a number such as 100, or all"),
+        (("--drive-pages", "-1"), "write a number such as 100, or all"),
+        (("--drive-pages", "5", "--to", "markdown"), "are for --to html"),
+    ],
+)
+def test_mistakes_are_told(lake_copy: Path, asked: tuple[str, ...], said: str) -> None:
+    done = ran("report", lake_copy, *asked)
+    assert done.code == 2
+    assert said in done.err
+
+
+def test_drive_pages_are_of_audits_only(tmp_path: Path) -> None:
+    done = ran("report", tmp_path, "--drive-pages", "5")
+    assert done.code == 2
+    assert "is not an audit" in done.err

@@ -52,10 +52,12 @@ def test_what_the_baseline_has_does_not_gate(audited: Audited, again: Path) -> N
     assert failures(again) == (0, 0)
     assert ran("report", again, "--to", "sarif").code == 0
     results = json.loads((again / "report.sarif").read_text(encoding="utf-8"))["runs"][0]["results"]
-    states = [(each["baselineState"], each["properties"]["gates"]) for each in results]
-    assert states == [("unchanged", False)] * n_failed
-    logs = [each["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] for each in results]
-    assert {log.rpartition("/")[2] for log in logs} == audited.new_fleet.planted
+    assert [(each["baselineState"], each["properties"]["gates"]) for each in results] == [
+        ("unchanged", False)
+    ] * n_failed
+    assert {
+        each["locations"][0]["physicalLocation"]["artifactLocation"]["uri"].rpartition("/")[2] for each in results
+    } == (audited.new_fleet.planted)
 
 
 def test_what_the_baseline_has_not_does(audited: Audited, again: Path) -> None:

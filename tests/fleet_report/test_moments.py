@@ -25,20 +25,15 @@ pytestmark = pytest.mark.ci
 LOGS = ("collision", "near-miss", "safe")
 
 
-def audit_demo(home: Path, *names: str) -> None:
-    """Audit drives of the demo in `demo` into `audit`."""
-    logs = tuple(str(home / "demo" / f"{name}.mcap") for name in names)
-    settings = JudgeSettings(memory=400_000_000)
-    request = AuditRequest(sources=logs, map=home / "demo" / "road.xodr", out=str(home / "audit"), settings=settings)
-    audit(request, Silent(), InThisProcess())
-
-
 @pytest.fixture(scope="module")
 def audited(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with three drives, and their audit in `audit`."""
     home = tmp_path_factory.mktemp("moments")
     demo.write(home / "demo")
-    audit_demo(home, *LOGS)
+    logs = tuple(str(home / "demo" / f"{name}.mcap") for name in LOGS)
+    settings = JudgeSettings(memory=400_000_000)
+    request = AuditRequest(sources=logs, map=home / "demo" / "road.xodr", out=str(home / "audit"), settings=settings)
+    audit(request, Silent(), InThisProcess())
     assert ran("report", home / "audit", "--quiet").code == 0
     return home
 
@@ -68,8 +63,9 @@ def test_each_finding_leads_to_its_picture(audited: Path) -> None:
     for link in links:
         assert link.partition("#")[0] == name
         assert moments.xpath("count(//*[@id=$id])", id=link.partition("#")[2]) == 1
-    svg = "*[local-name()='svg']"
-    assert moments.xpath(f"//*[contains(@class, 'plan')]//{svg} | //{svg}[contains(@class, 'plan')]")
+    assert moments.xpath(
+        "//*[contains(@class, 'plan')]//*[local-name()='svg'] | //*[local-name()='svg'][contains(@class, 'plan')]"
+    )
     assert not moments.xpath("//code[contains(., '--in .')]"), "the page does not lie in the folder of a check"
 
 
@@ -96,7 +92,13 @@ def test_a_changed_log_has_no_moments(audited: Path, tmp_path: Path) -> None:
     home = tmp_path / "moved"
     shutil.copytree(audited / "demo", home / "demo")
     log = home / "demo" / "near-miss.mcap"
-    audit_demo(home, "near-miss")
+    request = AuditRequest(
+        sources=(str(log),),
+        map=home / "demo" / "road.xodr",
+        out=str(home / "audit"),
+        settings=JudgeSettings(memory=400_000_000),
+    )
+    audit(request, Silent(), InThisProcess())
     assert ran("report", home / "audit").code == 0
     assert len(list((home / "audit").glob("drives/*-moments.html"))) == 1
     shutil.copy(home / "demo" / "safe.mcap", log)
@@ -131,3 +133,8 @@ def test_long_drives_are_left_out_unless_they_are_asked_for(own: Path, monkeypat
     assert not list(own.glob("drives/*-moments.html"))
     assert ran("report", own, "--moments", 2).code == 0
     assert len(list(own.glob("drives/*-moments.html"))) == 2
+
+
+def test_moments_are_of_pages(own: Path) -> None:
+    assert ran("report", own, "--to", "markdown", "--moments", 2).code == 2
+    assert ran("report", own, "--to", "junit", "--moments", 2).code == 2

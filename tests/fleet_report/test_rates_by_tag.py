@@ -20,23 +20,27 @@ RULES = [
 
 def test_by_a_tag_the_gravest_rule_is_first_and_of_these_the_most_frequent() -> None:
     n_findings = {"a.minor": 5, "b.contact": 1, "c.critical": 2}
-    severities = {row["rule_id"]: row["severity"] for row in RULES}
-    rows = [
-        {"rule_id": name, "finding_id": f"{name}{n}", "severity": severities[name], "t_start_ns": n, "t_end_ns": n}
-        for name, k in n_findings.items()
+    findings = [
+        found(
+            "d", rule_id=rule_id, finding_id=f"{rule_id}{n}", severity="minor" if rule_id == "a.minor" else "critical"
+        )
+        | {"t_start_ns": n, "t_end_ns": n}
+        for rule_id, k in n_findings.items()
         for n in range(k)
     ]
-    verdicts = [said("d", "fail", rule_id=name) for name in n_findings]
     with duckdb.connect() as con:
-        audits.add_rows(con, [ego_drive("d")], verdicts, [found("d", **row) for row in rows], RULES)
+        audits.add_rows(
+            con, [ego_drive("d")], [said("d", "fail", rule_id=name) for name in n_findings], findings, RULES
+        )
         told = rates_by_tag(con, "release")
     assert [each.rule_id for each in told.rules] == ["c.critical", "b.contact", "a.minor"]
 
 
 def test_a_rate_that_leaves_findings_out_is_told_by_its_lower_bound() -> None:
     drives = [ego_drive("a"), ego_drive("b", km=50.0)]
-    rows = (("a", "pass"), ("b", "fail"), ("b", "unknown"))
-    verdicts = [said(name, word, rule_id="b.contact") for name, word in rows]
+    verdicts = [
+        said(name, word, rule_id="b.contact") for name, word in (("a", "pass"), ("b", "fail"), ("b", "unknown"))
+    ]
     for of, is_told in (("b", True), ("a", False)):
         with duckdb.connect() as con:
             rows = verdicts if is_told else [*verdicts, said("a", "fail", rule_id="b.contact")]

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from drivelint.audit import AuditRequest, JudgeSettings, audit
+from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import Stopped, judged
+from tests.audit.here import Stopped
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 
@@ -41,8 +43,9 @@ def test_a_rate_that_rises_is_called(home: Path) -> None:
     content = json.loads(ran("trend", *months, "--format", "json").out)
     (planted,) = (each for each in content["rules"] if each["rule_id"] == PLANTED)
     assert (planted["called"], planted["direction"]) == (True, "rises")
-    rates = [rate["per_100km"]["rate"] for rate in planted["rates"]]
-    assert rates == sorted(rates)
+    assert [rate["per_100km"]["rate"] for rate in planted["rates"]] == sorted(
+        rate["per_100km"]["rate"] for rate in planted["rates"]
+    )
     assert [each["n_drives"] for each in content["audits"]] == list(SIZES.values())
     others = [each for each in content["rules"] if each["rule_id"] != PLANTED]
     assert others
@@ -79,9 +82,11 @@ def test_markdown_is_a_table_per_kind(home: Path) -> None:
 
 def test_an_audit_that_has_not_ended_is_no_trend_yet(home: Path, tmp_path: Path) -> None:
     drives = fleet.write(tmp_path / "fleet", 20)
+    settings = JudgeSettings(rules=("ukhc.no-collision",), memory=200_000_000)
     out = tmp_path / "june"
+    request = AuditRequest(sources=(str(drives.manifest),), map=drives.road, out=str(out), settings=settings)
     with pytest.raises(KeyboardInterrupt):
-        judged(drives, out, Stopped())
+        audit(request, Silent(), Stopped())
     printed = ran("trend", home / "may", out)
     assert printed.code == 4
     assert "the audit has not ended" in printed.err

@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from drivelint.audit import JudgeSettings
+from drivelint.audit import AuditRequest, JudgeSettings, audit
 from drivelint.audit.ask import run_query
-from tests.audit import fleet, here
+from drivelint.report.progress import Silent
+from tests.audit import fleet
+from tests.audit.here import InThisProcess
 from tests.evaluate.packs import invariant
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
@@ -45,7 +47,10 @@ class Own:
 
     def audit(self, out: Path, *params: str) -> Path:
         settings = JudgeSettings(rules=("own.slow",), rules_dirs=(self.rules,), params=params, memory=200_000_000)
-        here.judged(self.fleet, out, settings=settings)
+        request = AuditRequest(
+            sources=(str(self.fleet.manifest),), map=self.fleet.road, out=str(out), settings=settings
+        )
+        audit(request, Silent(), InThisProcess())
         return out
 
 
@@ -83,8 +88,10 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     assert done.code == 0
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("verdicts that change:\n")
-    counted = [line for line in told.splitlines() if line.startswith("  ")]
-    assert counted == ["  v0  6 pass -> fail", "  v1  6 pass -> fail"]
+    assert [line for line in told.splitlines() if line.startswith("  ")] == [
+        "  v0  6 pass -> fail",
+        "  v1  6 pass -> fail",
+    ]
     lines = [line for line in which.splitlines() if line.startswith("  ")]
     assert len(lines) == 12
     assert all(line.endswith(".parquet: ego 0: pass -> fail") for line in lines)
@@ -94,8 +101,8 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
 
 @pytest.mark.slow
 def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own, tmp_path: Path) -> None:
-    manifest = own.fleet.manifest
-    shutil.copy(own.fleet.log(0), own.fleet.logs / "copy.parquet")
+    manifest, logs = own.fleet.manifest, own.fleet.manifest.parent / "logs"
+    shutil.copy(logs / "drive-00000.parquet", logs / "copy.parquet")
     listed = manifest.read_text(encoding="utf-8")
     try:
         manifest.write_text(f'{listed}"logs/copy.parquet","v1","copied"\n', encoding="utf-8")

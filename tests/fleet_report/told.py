@@ -26,38 +26,20 @@ def words_of(element: Any) -> str:
     return " ".join(element.text_content().split())
 
 
-def audit_of(con: duckdb.DuckDBPyConnection, *rows: Any, **settings: Any) -> Audit:
-    """Put drives, verdicts, findings and rules of an audit into a database, and return it."""
-    audits.add_rows(con, *rows)
-    con.register("receipts", RECEIPT_SCHEMA.empty_table())
-    return Audit("out", LocalFolder(Path("out")), {"settings": settings}, AuditProgress("d"))
-
-
-def side(name: str, **settings: Any) -> Audit:
-    """Return an audit that has come to its end, to be compared with another."""
-    return Audit(name, LocalFolder(Path(name)), settings, AuditProgress("d"))
-
-
 class Told:
     """The page of a fleet as text."""
 
     def __init__(self, drives: list[Any], verdicts: list[Any], findings: list[Any], *by: str, **settings: Any) -> None:
         verdicts = [{**row, "t_start_ns": None, "object_id": None} for row in verdicts]
         with duckdb.connect() as con:
-            audit = audit_of(con, drives, verdicts, findings, [ROOM, CONTACT], **settings)
+            audits.add_rows(con, drives, verdicts, findings, [ROOM, CONTACT])
+            con.register("receipts", RECEIPT_SCHEMA.empty_table())
+            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, AuditProgress("d"))
             self.content = content_.fleet_content(con, audit, None, by)
         self.markdown = page.markdown(self.content).decode()
         self.html: Any = html.fromstring(page.html(self.content))
         (header,) = self.html.findall(".//header")
         self.header = words_of(header)
-
-    def rate(self, rule_id: str = "z-contact") -> Any:
-        (found,) = [each for each in self.content.rates if each.rule_id == rule_id]
-        return found
-
-    def section(self, name: str) -> Any:
-        (found,) = self.html.xpath(f"//section[@aria-labelledby='{name}']")
-        return found
 
     def row(self, table: str, name: str) -> Any:
         rows: list[Any] = self.html.xpath(f"{table}//tbody/tr")
