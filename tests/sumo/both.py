@@ -37,7 +37,9 @@ def both(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str
     with_plants = reading.read_log(planted.log, files.routes, net)
     expected = contacts.contacts(with_plants)
     differ += contacts.as_planted(chosen, expected)
-    differ += compare.other_contacts(expected, found.contacts, reading.jumps(with_plants))[0]
+    differ += compare.other_contacts(expected, found.contacts, reading.jumps(with_plants), reading.still(with_plants))[
+        0
+    ]
     return figures | {
         "planted contacts": sum(plant.touches for plant in chosen),
         "planted, missing by 0.1 m": sum(not plant.touches for plant in chosen),

@@ -15,6 +15,7 @@ from tests.sumo.contacts import Contact
 from tests.sumo.reading import PROFILES, Overtake, edges, jumps
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from tests.sumo.reading import Log
@@ -158,12 +159,16 @@ def _later(read: float | None, found: float | None) -> str:
 
 
 def other_contacts(
-    read: list[Contact], found: list[tuple[str, str, int, int]], moves: set[tuple[str, int]]
+    read: list[Contact],
+    found: list[tuple[str, str, int, int]],
+    moves: set[tuple[str, int]],
+    still: Collection[tuple[str, int]] = (),
 ) -> tuple[list[str], int]:
     """Return the contacts that only one of the two knows, and how many differ by steps at which SUMO moves a vehicle.
 
     Each contact is one of both vehicles. A place that contradicts the velocity is unknown to drivelint, so a contact may begin
-    later and end earlier by steps at which one of both is moved.
+    later and end earlier by steps at which one of both is moved. Boxes that overlap while both stand show no contact: it may end earlier
+    by these steps, too.
     """
     both = {(a, b, c.first, c.last) for c in read for a, b in ((c.one, c.other), (c.other, c.one))}
     only_read, only_found = both - set(found), set(found) - both
@@ -172,7 +177,11 @@ def other_contacts(
         for there in sorted(c for c in only_found if c[:2] == (one, other) and first <= c[2] <= c[3] <= last):
             left_out = [*range(first, there[2]), *range(there[3] + 1, last + 1)]
             # a jump contradicts the place before it as it does the one after it
-            if all(moves & {(who, at) for who in (one, other) for at in (step, step + 1)} for step in left_out):
+            if all(
+                moves & {(who, at) for who in (one, other) for at in (step, step + 1)}
+                or (step > there[3] and (one, step) in still and (other, step) in still)
+                for step in left_out
+            ):
                 moved |= {(one, other, first, last), there}
     differ = sorted((only_read | only_found) - moved)
     return [f"{c}: contact only {'read' if c in both else 'found'}" for c in differ], len(moved) // 2

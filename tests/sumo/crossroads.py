@@ -138,8 +138,14 @@ def crossings(folder: Path) -> list[Crossing]:
 
 
 def told(folder: Path, road: str) -> Drive:
-    """Return the log, every vehicle an ego, with the lights' states beside it, on the map `road`: c.xodr or c.net.xml."""
-    trace = read_trace(folder / "c.fcd.xml", IngestOptions(ego="all", mapping=str(folder / "c.rou.xml")))
+    """Return the log, every vehicle an ego, with the lights' states beside it, on the map `road`: c.xodr or c.net.xml.
+
+    In Great Britain nobody turns on red; where the nation is not known, a right turn may be allowed.
+    """
+    trace = read_trace(
+        folder / "c.fcd.xml",
+        IngestOptions(ego="all", mapping=str(folder / "c.rou.xml"), conditions=(("nation", "gb"),)),
+    )
     return Drive(trace, load_map(MapSource(road, (folder / road).read_bytes())))
 
 

@@ -25,6 +25,7 @@ OVER_M = 0.05  # a corner further over the line than that has left the lane
 LOOK_M = 1000.0  # with nobody coming, how far the road counts as looked at
 NEAR_M = 100.0  # who is pulled out behind, though not passed in the end
 WELL_OVER_M = 0.5
+STILL_MPS = 0.1
 JUMP_M = 1.0
 STANDING_MPS = 0.5
 PROFILES = {"relaxed": (10.0, 9.10), "nominal": (20.0, 4.65), "aggressive": (40.0, 1.11)}
@@ -209,6 +210,12 @@ def jumps(log: Log) -> set[tuple[str, int]]:
         off = np.abs(np.where(behind, -way, way) - 0.1 * own.speed[1:]) > JUMP_M
         found |= {(name, int(step)) for step in own.step[1:][off & (np.diff(own.step) == 1)]}
     return found
+
+
+def still(log: Log) -> set[tuple[str, int]]:
+    """Return who stands at a step."""
+    rows = np.flatnonzero(log.speed < STILL_MPS)
+    return {(log.ids[who], int(step)) for who, step in zip(log.who[rows], log.step[rows], strict=True)}
 
 
 def edges(log: Log) -> dict[str, tuple[int, int]]:

@@ -76,3 +76,13 @@ def test_a_contact_may_be_shorter_by_the_steps_around_a_jump_alone(moves: set[tu
     differ, moved = compare.other_contacts(read, found, moves)
     assert (not differ, moved) == (same, 2 * same)
     assert len(compare.other_contacts(read, [("a", "b", 2, 9)], moves)[0]) == 1
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "still", "same"),
+    [(2, 7, "ab", True), (2, 7, "a", False), (4, 9, "ab", False), (2, 6, "ab", False)],
+)
+def test_a_contact_may_end_when_both_stand(first: int, last: int, still: str, same: bool) -> None:
+    read, found = [contacts.Contact("a", "b", 2, 9)], [("a", "b", first, last), ("b", "a", first, last)]
+    standing = {(who, step) for who in still for step in (2, 3, 8, 9)}
+    assert (not compare.other_contacts(read, found, set(), standing)[0]) is same

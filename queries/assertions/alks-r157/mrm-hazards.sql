@@ -20,7 +20,7 @@
 --
 -- [reasons.signals_to_side]
 -- says = "the ego signals to the {side}: from the 01 series on, such a manoeuvre may change lanes"
--- advice = "a person must judge whether it did"
+-- advice = "see in a video whether it did"
 
 -- @condition
 -- The lamps cannot show both: while the manoeuvre changes lanes, as from the 01 series on (not seen) it may, they show the side.

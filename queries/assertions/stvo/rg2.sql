@@ -59,7 +59,7 @@
 --
 -- [reasons.braked_to_leave]
 -- says = "the ego braked on a lane of type {lane_type}, which is there to slow down on"
--- advice = "a person must judge whether it braked harder than the ramp demands"
+-- advice = "see in a video whether it braked harder than the ramp demands"
 
 -- @condition
 -- The filter of the acceleration flattens peaks: the true deceleration may be harder than the filtered one by accel_peak_mps2.

@@ -31,26 +31,19 @@ FROM overtake
 WHERE opposing IS DISTINCT FROM false
 
 -- @condition
--- If it is not sure that the manoeuvre is an overtake, the rule can be kept, but not broken.
-SELECT z.drive_id, z.ego_id, z.t_ns, z.ref_id, $margin_s AS required, z.at_least, CASE WHEN NOT doubt.is_doubtful THEN z.spare_s END AS observed,
-    CASE WHEN doubt.is_doubtful THEN overtake_doubt(o.vbp_id) ELSE z.reason END AS reason
-FROM (
-    SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.occurrence, bool_or(s.at_least) AS at_least,
-        -- An overtake that was not completed has no pull-out and cut-in angles of its own, so the profile `observed` has no zone: the rule
-        -- fails if no other profile would have left enough time.
-        coalesce(
-            max(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
-            CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
-        ) AS spare_s,
-        -- The measure is the reason where there is one: what other profiles would have had is shown with the overtakes.
-        CASE WHEN bool_or(s.profile = 'observed' AND s.zone IS NOT NULL) IS NOT true THEN why(
-            CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed')
-                THEN 'no_profile_in_time' ELSE 'spare_time_unknown' END,
-            {'observed_doubt': min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL)}
-        ) END AS reason
-    FROM reference r
-    JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
-    GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id, r.occurrence
-) z
-JOIN overtake o USING (drive_id, ego_id, occurrence)
-CROSS JOIN LATERAL (SELECT coalesce(NOT z.at_least AND z.spare_s < $margin_s, false) AND may_be_no_overtake(o.status, o.sure) AS is_doubtful) doubt
+SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $margin_s AS required, bool_or(s.at_least) AS at_least,
+    -- An overtake that was not completed has no pull-out and cut-in angles of its own, so the profile `observed` has no zone: the rule
+    -- fails if no other profile would have left enough time.
+    coalesce(
+        max(s.spare_s) FILTER (s.profile = 'observed' AND s.zone IS NOT NULL),
+        CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed') THEN max(s.spare_s) END
+    ) AS observed,
+    -- The measure is the reason where there is one: what other profiles would have had is shown with the overtakes.
+    CASE WHEN bool_or(s.profile = 'observed' AND s.zone IS NOT NULL) IS NOT true THEN why(
+        CASE WHEN bool_and(coalesce(s.zone IN ('A', 'B'), false)) FILTER (s.profile <> 'observed')
+            THEN 'no_profile_in_time' ELSE 'spare_time_unknown' END,
+        {'observed_doubt': min(s.reason) FILTER (s.profile = 'observed' AND s.zone IS NULL)}
+    ) END AS reason
+FROM reference r
+JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
+GROUP BY r.drive_id, r.ego_id, r.t_ns, r.ref_id

@@ -33,7 +33,7 @@
 --
 -- [reasons.may_be_emergency]
 -- says = "on the footway while an emergency manoeuvre was declared"
--- advice = "a person must judge whether that was an emergency"
+-- advice = "see in a video whether that was an emergency"
 
 -- @condition
 -- Ground that the map does not have may be property: an ego that comes from there slowly, or goes there, may cross the footway to get

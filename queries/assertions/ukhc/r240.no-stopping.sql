@@ -37,7 +37,7 @@
 --
 -- [reasons.may_be_emergency]
 -- says = "the ego stands with its hazard lights on, or at the end of a manoeuvre that it declared"
--- advice = "a person must judge whether it was an emergency"
+-- advice = "see in a video whether it was an emergency"
 --
 -- [reasons.may_wait_at_line]
 -- says = "the ego stands at a stop line: it is not known whether it had to wait there"

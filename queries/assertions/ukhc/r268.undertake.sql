@@ -27,7 +27,7 @@
 --
 -- [reasons.passed_standing]
 -- says = "{object_id} stood, and it is not known whether it waited in the traffic or had broken down"
--- advice = "a person must judge this"
+-- advice = "see in a video whether it had broken down"
 --
 -- [reasons.passed_on_side]
 -- says = "ego at {ego_speed_mps:.1f} m/s, the other {speed_mps:.1f} m/s on its {side}"

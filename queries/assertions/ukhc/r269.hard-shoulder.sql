@@ -30,7 +30,7 @@
 --
 -- [reasons.drove_with_hazard_lights]
 -- says = "the ego drove along the hard shoulder with its hazard lights on"
--- advice = "a person must judge whether that was an emergency"
+-- advice = "see in a video whether that was an emergency"
 --
 -- [reasons.stop_unseen]
 -- says = "the log does not show whether the ego stops with its hazard lights on"
