@@ -21,11 +21,15 @@ WHERE opposing IS DISTINCT FROM false
 
 -- @condition
 -- An ego that went back into its lane, and of which it is not sure that it wanted to overtake, did not break the rule for sure.
-SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, s.profile, CASE WHEN NOT doubt.is_doubtful THEN s.da_m END AS observed, s.sda_m AS required, s.at_least,
+SELECT
+    r.drive_id, r.ego_id, r.t_ns, r.ref_id, s.profile, s.sda_m AS required, s.at_least,
+    CASE WHEN NOT doubt.is_doubtful THEN s.da_m END AS observed,
     CASE WHEN doubt.is_doubtful THEN overtake_doubt(o.vbp_id) ELSE s.reason END AS reason
 FROM reference r
 JOIN overtake o USING (drive_id, ego_id, occurrence)
 JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
 JOIN profile p USING (profile)
-CROSS JOIN LATERAL (SELECT coalesce(NOT s.at_least AND s.da_m <= s.sda_m AND o.status = 'aborted' AND NOT o.sure, false) AS is_doubtful) doubt
+CROSS JOIN LATERAL (
+    SELECT coalesce(NOT s.at_least AND s.da_m <= s.sda_m AND o.status = 'aborted' AND NOT o.sure, false) AS is_doubtful
+) doubt
 WHERE p.selected
