@@ -9,7 +9,7 @@
 -- legal = "should"
 -- status = "stable"
 -- sense = "holds"
--- reads = ["exit_passed", "indicator_on", "lane_change"]
+-- reads = ["exit_passed", "indicator_on", "lane_crossing"]
 -- requires = ["map", "registration", "indicator"]
 --
 -- [params.off_s]
@@ -20,10 +20,11 @@
 -- @reference
 -- A signal for a change to the lane beside the exit is no signal to leave.
 WITH lane_change_signal AS (
-    SELECT i.drive_id, i.ego_id, i.occurrence, max(l.t_start_ns) AS t_start_ns
+    SELECT i.drive_id, i.ego_id, i.occurrence, max(l.t_ns) AS t_ns
     FROM indicator_on i
-    JOIN lane_change l ON l.drive_id = i.drive_id AND l.ego_id = i.ego_id AND l.side = i.side AND l.t_start_ns >= i.t_on_ns
-    WHERE l.t_start_ns <= i.t_off_ns AND i.t_off_ns <= coalesce(l.t_done_ns, l.t_start_ns) + ($off_s * 1e9)::BIGINT
+    JOIN lane_crossing l ON l.drive_id = i.drive_id AND l.ego_id = i.ego_id AND l.side = CASE i.side WHEN 'left' THEN 1 WHEN 'right' THEN -1 END
+        AND l.t_ns >= i.t_on_ns
+    WHERE l.t_ns <= i.t_off_ns AND i.t_off_ns <= l.t_ns + ($off_s * 1e9)::BIGINT
     GROUP BY ALL
 )
 SELECT x.drive_id, x.ego_id, greatest(max(i.t_on_ns), x.t_near_ns) AS t_ns, x.side, x.occurrence
@@ -31,7 +32,7 @@ FROM exit_passed x
 JOIN indicator_on i ON i.drive_id = x.drive_id AND i.ego_id = x.ego_id AND i.side = x.side
     AND i.t_on_ns <= coalesce(x.t_gore_ns, i.t_on_ns) AND i.t_off_ns >= x.t_near_ns
 LEFT JOIN lane_change_signal c ON c.drive_id = i.drive_id AND c.ego_id = i.ego_id AND c.occurrence = i.occurrence
-WHERE coalesce(c.t_start_ns >= x.t_near_ns, true)
+WHERE coalesce(c.t_ns > x.t_near_ns, true)
 GROUP BY x.drive_id, x.ego_id, x.t_near_ns, x.side, x.occurrence
 
 -- @anchor
