@@ -152,3 +152,33 @@ def test_a_terminal_that_is_gone_ends_a_command_as_sigterm_does(tmp_path: Path) 
         _, said = process.communicate(timeout=300)
     assert process.returncode > 0, said
     assert "interrupted" in said
+
+
+AN_IMPORT_THAT_A_SIGNAL_ENDS = """
+import importlib, os, signal, sys
+app = importlib.import_module("drivelint.cli.app")
+
+def command(_name):
+    def run(**_options):
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+            signal.sigwait([signal.SIGUSR1])
+        except KeyboardInterrupt:
+            pass
+        raise ImportError("initialization failed")
+    return run
+
+app._app_with_command = command
+sys.argv = ["drivelint", "check"]
+app.main()
+"""
+
+
+@pytest.mark.parametrize("signalled", [True, False])
+def test_an_import_that_a_signal_ends_is_an_interruption(signalled: bool) -> None:
+    """An extension module makes an ImportError of the exception that ends its import."""
+    text = AN_IMPORT_THAT_A_SIGNAL_ENDS
+    text = text if signalled else text.replace("os.kill(os.getpid(), signal.SIGTERM)", "raise KeyboardInterrupt")
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == (130 if signalled else 4), done.stderr
+    assert ("interrupted" in done.stderr, "internal error" in done.stderr) == (signalled, not signalled)

@@ -2,8 +2,8 @@
 
 Python's handler raises `KeyboardInterrupt` at the current statement of the main thread. In a callback of an import or of the garbage
 collector, Python only prints this error and continues; an extension module that is being imported makes an `ImportError` of it; within a
-library's locking code, it leaves the lock locked. So the handlers here
-also record each signal. While another thread works, they only record it: the main thread polls the record while it waits.
+library's locking code, it leaves the lock locked. So the handlers here also record each signal. While another thread works, they only
+record it: the main thread polls the record while it waits.
 """
 
 from __future__ import annotations
