@@ -57,13 +57,8 @@ def shift(states: Columns, rows: Any, ahead_m: float, left_m: float) -> None:
 
 
 def swapped_sizes(actors: Columns, states: Columns) -> None:
-    """Length and width of all vehicles and animals are exchanged, as ScenarioNet does with the ego's of nuScenes.
-
-    A body of an unknown class may be wider than long.
-    """
-    long = (actors["length_m"] > 1.3 * actors["width_m"]) & np.array(
-        [kind is not None for kind in actors["actor_class"]]
-    )
+    """Length and width of all vehicles are exchanged, as ScenarioNet does with the ego's of nuScenes."""
+    long = actors["length_m"] > 1.3 * actors["width_m"]
     actors["length_m"][long], actors["width_m"][long] = actors["width_m"][long].copy(), actors["length_m"][long].copy()
 
 
@@ -121,7 +116,7 @@ def spinning_cars(actors: Columns, states: Columns) -> None:
 
 
 def second_body(actors: Columns, states: Columns) -> None:
-    """Who comes nearest to the ego is in the log twice, 0.3 m apart; a person at the same place, or the two could be two persons."""
+    """Who comes nearest to the ego is in the log twice, 0.3 m apart."""
     name = nearest_other(states)
     if name is not None:
         rows = rows_of(states, name)
@@ -131,8 +126,7 @@ def second_body(actors: Columns, states: Columns) -> None:
         actors["actor_id"][-1] = "double"
         twice = np.arange(len(states["t_ns"]) - len(rows), len(states["t_ns"]))
         states["actor_id"][twice] = "double"
-        if actors["actor_class"][-1] != "pedestrian":
-            shift(states, twice, 0.3, 0.1)
+        shift(states, twice, 0.3, 0.1)
 
 
 ATTACKS: Final = (
