@@ -113,24 +113,37 @@ def test_swapped_sizes_of_who_moves_are_exchanged(tmp_path: Path, heading: float
 
 
 @pytest.mark.parametrize(
-    ("actor_class", "sides", "exchanged"),
+    ("actor_class", "sides", "believed", "check"),
     [
-        ("bicycle", (0.6, 1.8), True),
-        ("animal", (0.8, 2.4), True),
+        ("bicycle", (0.6, 1.8), (1.8, 0.6), "size_turned"),
+        ("animal", (0.8, 2.4), (2.4, 0.8), "size_turned"),
         # the box of a rider's body alone
-        ("bicycle", (0.5, 1.2), False),
-        # it may be a barrier on a trolley
-        (None, (0.8, 2.4), False),
+        ("bicycle", (0.5, 1.2), (0.5, 1.2), None),
+        # it may be a horse, a car of which the rear is seen, or a barrier on a trolley
+        (None, (0.8, 2.4), (None, None), "size_unknown"),
+        ("object", (0.8, 2.4), (None, None), "size_unknown"),
+        (None, (0.4, 0.8), (0.4, 0.8), None),
     ],
 )
 def test_swapped_sizes_of_slim_bodies(
-    tmp_path: Path, actor_class: str | None, sides: tuple[float, float], exchanged: bool
+    tmp_path: Path,
+    actor_class: str | None,
+    sides: tuple[float, float],
+    believed: tuple[float, float],
+    check: str | None,
 ) -> None:
     body = track(5.0, actor_class=actor_class, length_m=sides[0], width_m=sides[1])
     trace = drive(tmp_path, body=body)
-    found = actor(trace, "body")["length_m"], actor(trace, "body")["width_m"]
-    assert found == (sides[::-1] if exchanged else sides)
-    assert ("size_turned" in checks(trace)) is exchanged
+    assert (actor(trace, "body")["length_m"], actor(trace, "body")["width_m"]) == believed
+    assert {name for name in checks(trace) if name.startswith("size_")} == ({check} - {None})
+
+
+@pytest.mark.parametrize(("speed", "believed"), [(0.0, (0.8, 2.4)), (0.9, (0.8, 2.4)), (1.1, (None, None))])
+def test_a_wide_thing_that_stands_keeps_its_size(
+    tmp_path: Path, speed: float, believed: tuple[float | None, float | None]
+) -> None:
+    trace = drive(tmp_path, body=track(speed, actor_class=None, length_m=0.8, width_m=2.4))
+    assert (actor(trace, "body")["length_m"], actor(trace, "body")["width_m"]) == believed
 
 
 def test_swapped_sizes_of_who_stands_are_unknown(tmp_path: Path) -> None:

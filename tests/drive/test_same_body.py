@@ -126,6 +126,31 @@ def test_who_may_drive_beside_the_other_is_doubted_as_long_as_it_stays_there(
     assert {(row["quantity"], row["t_from_ns"], row["t_to_ns"]) for row in rows} == {("position", 0, until_ns)}
 
 
+@pytest.mark.parametrize(
+    ("apart", "longest_m", "doubted"),
+    [
+        ((0.3, 0.1), 0.5, {"a", "b"}),
+        # side by side, their boxes in each other by 0.1 m
+        ((0.1, 0.4), 0.5, set()),
+        # one of them goes on
+        ((0.3, 0.1, 1.5), 0.5, set()),
+        # a person at a car's door
+        ((1.5, 0.7), 4.5, set()),
+    ],
+)
+def test_two_persons_in_one_place_are_not_exact(
+    tmp_path: Path, apart: tuple[float, ...], longest_m: float, doubted: set[str]
+) -> None:
+    first = track(0.8, actor_class="pedestrian", length_m=longest_m, width_m=0.5)
+    second = moved(track(0.8, actor_class="pedestrian", length_m=0.5, width_m=0.5), apart[0], apart[1])
+    for speed in apart[2:]:
+        second["x_m"] = second["x_m"] + speed * np.arange(len(second["x_m"])) / 10.0
+    trace = drive(tmp_path, a=first, b=second)
+    rows = [row for row in trace.tables["doubt"].to_pylist() if row["code"] == "begin_overlap"]
+    assert {row["actor_id"] for row in rows} == doubted
+    assert {row["quantity"] for row in rows} <= {"position"}
+
+
 def test_who_collides_after_the_begin_is_not_doubted(tmp_path: Path) -> None:
     cars = begun(-1.0, closing=2.0)
     assert not {row for row in doubts(drive(tmp_path, **cars)) if row[2] == "begin_overlap"}

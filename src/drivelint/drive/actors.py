@@ -24,11 +24,14 @@ ELONGATED_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "
 """Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
 SLIM_CLASSES: Final = frozenset({"bicycle", "motorcycle", "animal"})
 MOST_SLIM_WIDTH_M: Final = 1.2
-"""A two-wheeler or a horse that is wider than this, and wider than long, is not the box of a rider's body: its sides are exchanged."""
+"""A two-wheeler or a horse that is wider than this, and wider than long, is not the box of a rider's body: its sides are exchanged. Of who
+is of unknown class, and moves, it may also be that a detector saw the rear alone: the sizes are unknown."""
 MOST_WIDTH_PER_LENGTH: Final = 1.1
 """A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
 LEAST_SPEED_WITH_DIRECTION_MPS: Final = 2.0
 """Above this speed, the velocity of a box shows its direction of motion."""
+LEAST_SPEED_OF_DOUBT_MPS: Final = 1.0
+"""Above this speed, what is of unknown class shows well enough along which side it moves to doubt its box."""
 LEAST_MOVING_SAMPLES: Final = 5
 MOST_ANGLE_ALONG_HEADING_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
@@ -149,9 +152,17 @@ def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in ELONGATED_CLASSES for kind in actors.classes], np.bool_)
     slim_kind = np.array([kind in SLIM_CLASSES for kind in actors.classes], np.bool_)
-    wide = (long_kind | slim_kind & (width > MOST_SLIM_WIDTH_M)) & (width > MOST_WIDTH_PER_LENGTH * length)
-    along = np.isin(actors.ids, _actors_moving_along_heading(states)) if wide.any() else wide
-    turned, dropped_sizes = wide & along, wide & ~along
+    unnamed = np.array([kind is None or kind == "object" for kind in actors.classes], np.bool_)
+    too_wide = (long_kind | (slim_kind | unnamed) & (width > MOST_SLIM_WIDTH_M)) & (
+        width > MOST_WIDTH_PER_LENGTH * length
+    )
+    turned, dropped_sizes = too_wide.copy(), too_wide.copy()
+    if too_wide.any():
+        along = np.isin(actors.ids, _actors_moving_along_heading(states, LEAST_SPEED_WITH_DIRECTION_MPS))
+        # who is of unknown class and does not move along its heading may be a barrier
+        in_doubt = np.isin(actors.ids, _actors_moving_along_heading(states, LEAST_SPEED_OF_DOUBT_MPS))
+        turned &= along & ~unnamed
+        dropped_sizes &= np.where(unnamed, in_doubt, ~along)
     actors.sizes["length_m"] = np.where(turned, width, np.where(dropped_sizes, np.nan, length))
     actors.sizes["width_m"] = np.where(turned, length, np.where(dropped_sizes, np.nan, width))
     findings = []
@@ -168,10 +179,10 @@ def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     return findings + _implausible_size_findings(states, actors)
 
 
-def _actors_moving_along_heading(states: States) -> list[str]:
-    """Return the ids of the actors that move along their heading, forwards or backwards."""
+def _actors_moving_along_heading(states: States, least_mps: float) -> list[str]:
+    """Return the ids of the actors that move along their heading, forwards or backwards, at this speed or more."""
     vx, vy = states.velocity
-    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > LEAST_SPEED_WITH_DIRECTION_MPS)
+    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > least_mps)
     off = np.abs(wrap_angles(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
     n, n_along = (
         np.bincount(states.actor[rows], minlength=len(states.ids))

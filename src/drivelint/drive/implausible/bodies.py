@@ -54,6 +54,12 @@ behind the other and `MOST_COUPLED_SIDE_OFFSET_M` to the side, at a median speed
 and they overlap by at least `LEAST_COUPLED_OVERLAP_M` in some sample."""
 
 
+LONGEST_PERSON_M: Final = 1.5
+ONE_PLACE_OVERLAP_SHARE: Final = 1 / 3
+"""Two boxes of persons, not longer than `LONGEST_PERSON_M`, that overlap by this share along and across, in `LEAST_DEEP_SAMPLE_SHARE` of
+their common samples and at one velocity, may be one person or two: the position of one at least is wrong by a decimetre or more."""
+
+
 class _Boxes(NamedTuple):
     """Boxes (n): centre (2, n), unit vector along the box (2, n), half length and half width (2, n), velocity (2, n)."""
 
@@ -94,7 +100,7 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
         deep = _overlap_deeply(first, second)
         if len(deep) < SAME_BODY_LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < LEAST_DEEP_SAMPLE_SHARE:
             if not _are_coupled(first, second):
-                together = _doubtful_begin_samples(first, second)
+                together = _doubtful_begin_samples(first, second) | _samples_in_one_place(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
@@ -107,7 +113,7 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
         pairs.append(f"{left} is the same body as {kept}")
     text = f"{name_list(pairs)}, in {{n}} of {{of}} states: the first of the two is not used" if pairs else ""
     findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
-    text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their positions are not exact"
+    text = "boxes of two actors overlap from their first sample, in {n} of {of} states ({ids}): their positions are not exact"
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
@@ -197,6 +203,7 @@ def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int,
         )
         near = (
             _overlap_deeply(mine, theirs)
+            | _are_persons_in_one_place(mine, theirs)
             | coupled
             | (_overlaps_and_second_half_extents_m(mine, theirs)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(axis=0)
         )
@@ -252,6 +259,24 @@ def _overlap_deeply(first: _Boxes, second: _Boxes) -> Mask:
     overlap, reach = _overlaps_and_second_half_extents_m(first, second)
     deep: Mask = np.all(overlap >= 2.0 * DEEP_OVERLAP_SHARE * np.minimum(first.half_sizes, reach), axis=0)
     return deep
+
+
+def _are_persons_in_one_place(first: _Boxes, second: _Boxes) -> Mask:
+    """Return the mask of the pairs of boxes (n) of two persons that overlap (see `ONE_PLACE_OVERLAP_SHARE`); False for NaN."""
+    overlap, reach = _overlaps_and_second_half_extents_m(first, second)
+    small = np.maximum(first.half_sizes[0], second.half_sizes[0]) <= LONGEST_PERSON_M / 2.0
+    inside: Mask = small & np.all(
+        overlap >= 2.0 * ONE_PLACE_OVERLAP_SHARE * np.minimum(first.half_sizes, reach), axis=0
+    )
+    return inside
+
+
+def _samples_in_one_place(first: _Boxes, second: _Boxes) -> Mask:
+    """Return the mask of the common samples (n) at which two tracks of persons overlap; empty unless they do so nearly all the time."""
+    inside = _are_persons_in_one_place(first, second)
+    together = len(inside) >= SAME_BODY_LEAST_COMMON_SAMPLES and inside[0] and inside.mean() >= LEAST_DEEP_SAMPLE_SHARE
+    apart_mps = np.nanmedian(np.hypot(*(first.velocity - second.velocity))) if together else np.nan
+    return inside & (apart_mps <= SAME_BODY_MOST_VELOCITY_DIFFERENCE_MPS)
 
 
 def _are_in_line(first: _Boxes, second: _Boxes) -> Mask:
