@@ -21,3 +21,7 @@ CREATE OR REPLACE MACRO may_walk(actor_class) AS coalesce(is_class(actor_class, 
 -- Whether an actor may be a vehicle, or is an object in the ego's way. d_m is the lateral distance between the two centres, half_m the sum
 -- of the two half widths.
 CREATE OR REPLACE MACRO may_be_vehicle_or_obstacle(actor_class, d_m, half_m) AS may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) < half_m;
+-- Whether a thing that stands in the whole log is as large as a car, and may be one that is parked. No car is as narrow as
+-- narrowest_car_m.
+CREATE OR REPLACE MACRO narrowest_car_m() AS 1.2;
+CREATE OR REPLACE MACRO may_be_parked_car(length_m, width_m) AS length_m > longest_animal_m() AND width_m > narrowest_car_m();

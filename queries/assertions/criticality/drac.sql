@@ -28,7 +28,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
     CASE WHEN v.object_id IS NOT NULL THEN unless_in_doubt(on_course(
         v.gap_m, ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND may_touch(v.passes_by, v.grazes) AND either_moves(v.ego_speed_mps, v.speed_mps) AND NOT comes(v.speed_mps, v.oncoming), v.closing_more_mps + v.closing_less_mps)
+    ) AND must_keep(v.passes_by, v.grazes, drac_mps2(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)) <= $most_mps2) AND either_moves(v.ego_speed_mps, v.speed_mps) AND NOT comes(v.speed_mps, v.oncoming), v.closing_more_mps + v.closing_less_mps)
     -- A vehicle that is not seen is at least free_m away.
     WHEN v.closing_more_mps + v.closing_less_mps <= 0 AND (v.known OR drac_mps2(v.free_m, v.ego_speed_mps) <= $most_mps2) THEN true END AS applies,
     CASE WHEN v.grazes THEN graze_doubt(v.object_id) END AS reason

@@ -41,7 +41,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
         -- The boxes are moved across the lane at their present speeds, to the time at which the gap is gone at the present accelerations.
         v.gap_m, coalesce(mttc_s(v.gap_m, v.ego_speed_mps, m.accel_mps2, motion.away_mps, motion.other_mps2), motion.ttc_s),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND may_touch(v.passes_by, v.grazes) AND CASE WHEN v.across_m < 0 OR motion.ttc_s < 'inf' THEN true END AND either_moves(v.ego_speed_mps, v.speed_mps)
+    ) AND must_keep(v.passes_by, v.grazes, mttc_s(v.gap_m, v.ego_speed_mps, m.accel_mps2, motion.away_mps, motion.other_mps2) >= $least_s) AND CASE WHEN v.across_m < 0 OR motion.ttc_s < 'inf' THEN true END AND either_moves(v.ego_speed_mps, v.speed_mps)
     -- A vehicle that is not seen is at least free_m away, and the two close in with no more acceleration than tyres allow.
     WHEN v.known OR gap_closed_s(v.free_m, v.free_mps, 10.0) >= $least_s THEN true END AS applies,
     CASE WHEN v.grazes THEN graze_doubt(v.object_id)

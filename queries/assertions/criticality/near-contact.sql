@@ -41,14 +41,18 @@
 -- [reasons.passed_in_hole]
 -- says = "the ego and object {object_id} pass each other in a hole in the log of {hole_s:.1f} s, which begins here"
 --
+-- [reasons.thing_or_vehicle]
+-- says = "object {object_id} is recorded as a thing, and is as large as a car: it may be one that is parked"
+-- advice = "record the class of what stands at the road"
+--
 -- [reasons.nearness_between_steps]
 -- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
 
 -- @applies
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
-    -- The ego does not pass a vehicle on another level. If the level is not known, the rule may not apply.
-    CASE WHEN NOT p.off_level THEN e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies,
-    NULL AS reason
+    -- The ego does not pass a vehicle on another level. If the level is not known, the rule may not apply. A cone is nobody.
+    CASE WHEN NOT p.off_level THEN CASE WHEN p.actor_class IS DISTINCT FROM 'object' THEN true END AND e.speed_mps > standing_mps() AND sqrt((e.speed_mps * cos(e.yaw_rad) - o.vx_mps) ** 2 + (e.speed_mps * sin(e.yaw_rad) - o.vy_mps) ** 2) > $passing_mps END AS applies,
+    CASE WHEN p.actor_class = 'object' THEN why('thing_or_vehicle', {'object_id': p.object_id}) END AS reason
 FROM pair p
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -59,7 +63,8 @@ LEFT JOIN (
     WHERE clearance_m <= 0
     GROUP BY drive_id, ego_id, object_id
 ) c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id AND c.object_id = p.object_id
-WHERE coalesce(p.clearance_m, l.least_m, 0.0) <= $near_m AND p.actor_class IS DISTINCT FROM 'object'
+WHERE coalesce(p.clearance_m, l.least_m, 0.0) <= $near_m
+    AND (p.actor_class IS DISTINCT FROM 'object' OR may_be_parked_car(p.length_m, p.width_m) AND NOT p.clearance_is_bound AND p.clearance_m < $least_m)
     AND coalesce(p.t_ns < c.t_first_ns - ($contact_s * 1e9)::BIGINT OR p.t_ns > c.t_last_ns + ($contact_s * 1e9)::BIGINT, true)
 UNION ALL
 -- The ego may have passed an actor whose track ends nearby, as long as it may be near.

@@ -29,7 +29,7 @@ SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
     CASE WHEN v.object_id IS NOT NULL THEN unless_in_doubt(on_course(
         v.gap_m, ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)),
         e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad), p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)
-    ) AND may_touch(v.passes_by, v.grazes) AND either_moves(v.ego_speed_mps, v.speed_mps), v.closing_more_mps + v.closing_less_mps)
+    ) AND must_keep(v.passes_by, v.grazes, ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)) >= $least_s) AND either_moves(v.ego_speed_mps, v.speed_mps), v.closing_more_mps + v.closing_less_mps)
     -- A vehicle that is not seen is at least free_m away.
     WHEN v.closing_more_mps + v.closing_less_mps <= 0 AND (v.known OR ttc_s(v.free_m, v.free_mps) >= $least_s) THEN true END AS applies,
     CASE WHEN v.grazes THEN graze_doubt(v.object_id) END AS reason
