@@ -46,6 +46,22 @@ def test_text_is_for_people(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd
     assert "Traceback" not in err
 
 
+def test_the_sql_of_a_rule_is_folded_so_that_it_can_be_copied(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    asked = ("no-collision@safe", "--in", str(folder), "--samples", "0")
+    _, out, _ = ran(monkeypatch, capfd, *asked)
+    _, text, _ = ran(monkeypatch, capfd, *asked, "--format", "json")
+    shown = out[out.index("-- @") :].splitlines()
+    written = [line for sql in json.loads(text)["sql"].values() for line in sql.splitlines()]
+    assert max(map(len, shown)) <= 100 < max(map(len, written))
+    one, other = (
+        " ".join(word for line in lines if not line.lstrip().startswith("--") for word in line.split())
+        for lines in (shown, written)
+    )
+    assert one == other
+
+
 @pytest.mark.ci
 def test_json_is_for_programs(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     args = ("no-collision", "--in", str(folder), "--samples", "0", "--format", "json")

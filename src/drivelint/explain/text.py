@@ -97,7 +97,7 @@ def render(explanation: Explanation, width: int) -> Group:
         ),
         ("Data on which it was judged", prose["rows"]),
         ("What the rule requires", prose["asks"]),
-        ("How it was judged", [*prose["judged"], *_sql_lines(explanation)]),
+        ("How it was judged", [*prose["judged"], *_sql_lines(explanation, width)]),
     ]
     for heading, lines in sections:
         if lines:
@@ -168,7 +168,7 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
     return {name: list(filter(None, text.split("\n"))) for name, text in sections.items()}
 
 
-def _sql_lines(explanation: Explanation) -> list[str]:
+def _sql_lines(explanation: Explanation, width: int) -> list[str]:
     if lacks_signal(explanation.verdict):
         return []
     columns_by_value = {
@@ -176,7 +176,27 @@ def _sql_lines(explanation: Explanation) -> list[str]:
         for word, value in _LACKING_VALUES.items()
     }
     lines = (line for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines()))
-    return [f"|{line}{_note_on_line(line, columns_by_value)}" for line in lines]
+    return [
+        f"|{part}" for line in lines for part in _folded_sql(line, _note_on_line(line, columns_by_value), width - 2)
+    ]
+
+
+def _folded_sql(line: str, note: str, width: int) -> list[str]:
+    """Return a line of SQL and a note as lines of at most `width`, if it can be broken: they can be copied and run as one line can."""
+    indent = line[: len(line) - len(line.lstrip())]
+    is_comment = line.lstrip().startswith("--")
+    if len(line + note) <= width or ("--" in line and not is_comment):
+        return [line + note]
+    kept = line if is_comment else re.sub(r"'[^']*'", lambda text: text[0].replace(" ", "\0"), line)
+    lines = textwrap.wrap(
+        kept,
+        width,
+        subsequent_indent=indent + ("-- " if is_comment else "    "),
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    lines = [part.replace("\0", " ") for part in lines]
+    return [*lines, indent + note.lstrip()] if note else lines
 
 
 def _note_on_line(line: str, columns_by_value: Mapping[str, Collection[str]]) -> str:
