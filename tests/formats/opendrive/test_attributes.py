@@ -58,6 +58,36 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
 
 
 @pytest.mark.parametrize(
+    ("access", "lane_type", "unread"),
+    [
+        ('<access rule="allow" restriction="bus"/>', "bus", False),
+        # OpenDRIVE 1.8
+        ('<access rule="allow"><restriction type="bus"/><restriction type="taxi"/></access>', "bus", False),
+        ('<access rule="allow" restriction="taxi"/><access rule="allow" restriction="bicycle"/>', "taxi", False),
+        ('<access rule="allow" restriction="bus"/><access rule="allow" restriction="passengerCar"/>', "driving", False),
+        ('<access rule="deny" restriction="truck"/>', "driving", False),
+        ('<access rule="deny" restriction="none"/><access restriction="none"/>', "driving", False),
+        ('<access rule="deny" restriction="passengerCar"/>', "driving", True),
+        ('<access rule="allow" restriction="emergency"/>', "driving", True),
+        ('<access sOffset="50" rule="allow" restriction="bus"/>', "driving", True),
+        (
+            '<access rule="allow" restriction="passengerCar"/><access sOffset="50" rule="allow" restriction="bus"/>',
+            "driving",
+            True,
+        ),
+        # before OpenDRIVE 1.5
+        ('<access restriction="bus"/>', "driving", True),
+    ],
+)
+def test_who_may_use_a_lane(access: str, lane_type: str, unread: bool) -> None:
+    environment = load(road(lanes=section(0, lane(1), lane(-1, WIDTH + access))))
+    assert lanelets(environment)["1.0.-1"]["lane_type"] == lane_type
+    assert [row["lanelet_id"] for row in rows(environment, "map_quality", check_id="access_unread")] == [
+        "1.0.-1"
+    ] * unread
+
+
+@pytest.mark.parametrize(
     ("speed", "limit"),
     [
         ("9", (0, 100, 9.0, "lane")),  # without a unit it is in metres per second

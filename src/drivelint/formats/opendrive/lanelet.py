@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES, RoadMark, record_spans
+from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES, RoadMark
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -79,7 +80,7 @@ def road_type(lanelet: Lanelet) -> str | None:
     """Return the road type of most of the lanelet's length; None if the map does not state it."""
     road = lanelet.road
     held: dict[str | None, float] = {}
-    for i, a, b in record_spans((s for s, _ in road.types), lanelet.lane_section.start_m, lanelet.lane_section.end_m):
+    for i, a, b in _record_spans((s for s, _ in road.types), lanelet.lane_section.start_m, lanelet.lane_section.end_m):
         kind = road.types[i][1] if i >= 0 else None
         held[kind] = held.get(kind, 0.0) + b - a
     best = max(held.items(), key=lambda item: (item[1], item[0] or ""), default=(None, 0.0))[0]
@@ -90,11 +91,11 @@ def recorded_limit_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `speed_limit`: the lane's own records, else those of the road type; no row where neither states a limit."""
     rows: Rows = []
     start, end = lanelet.lane_section.start_m, lanelet.lane_section.end_m
-    for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
+    for i, a, b in _record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].is_stated:
             rows += _rows_of_limit(lanelet, a, b, lanelet.lane.speeds[i], "lane")
             continue
-        for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
+        for j, c, d in _record_spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].is_stated:
                 rows += _rows_of_limit(lanelet, c, d, lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
@@ -132,7 +133,7 @@ _SWAPPED_MARKING = {"solid_broken": "broken_solid", "broken_solid": "solid_broke
 
 def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swaps_double_lines: bool) -> Rows:
     rows = []
-    spans = record_spans((m.start_m for m in marks), lanelet.lane_section.start_m, lanelet.lane_section.end_m)
+    spans = _record_spans((m.start_m for m in marks), lanelet.lane_section.start_m, lanelet.lane_section.end_m)
     for i, a, b in lanelet.lanelet_spans(spans):
         mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
         marking = _SWAPPED_MARKING.get(mark.marking or "", mark.marking) if swaps_double_lines else mark.marking
@@ -141,3 +142,10 @@ def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap
             "marking": marking, "color": mark.color, "lane_change": mark.lane_change,
         })  # fmt: skip
     return rows
+
+
+def _record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
+    """Return (record index, from, to) of the records that apply between two stations; index -1: before the first record."""
+    edges = [float("-inf"), *starts, float("inf")]
+    cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
+    return [(i, a, b) for i, a, b in cut if b - a > 1e-6]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drivelint.formats.opendrive.access import lane_type_and_unread
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
 from drivelint.road.countries import only_nation
@@ -69,6 +69,7 @@ class Lane:
     speeds: tuple[SpeedLimit, ...] = ()
     travel: str | None = None  # RoadRunner's userData: forward, backward, undirected
     direction: str | None = None  # OpenDRIVE 1.8: standard, reversed, both
+    is_access_unread: bool = False  # see `lane_type_and_unread`
     invalid: str | None = None
 
 
@@ -294,6 +295,7 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
     if not widths and not borders:
         raise MalformedError("it has neither <width> nor <border>")
     user = next(iter(element.iterfind("userData//vectorLane")), None)
+    kind, is_access_unread = lane_type_and_unread(element, kind)
     return Lane(
         number=lane_no,
         kind=kind,
@@ -305,6 +307,7 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
         speeds=_speed_limits(element.findall("speed"), "sOffset", section_start, quality),
         travel=None if user is None else user.get("travelDir"),
         direction=element.get("direction"),
+        is_access_unread=is_access_unread,
     )
 
 
@@ -389,10 +392,3 @@ def _connection(junction_id: str, element: etree._Element) -> Connection:
             (integer_attribute(link, "from"), integer_attribute(link, "to")) for link in element.findall("laneLink")
         ),
     )
-
-
-def record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
-    """Return (record index, from, to) of the records that apply between two stations; index -1: before the first record."""
-    edges = [float("-inf"), *starts, float("inf")]
-    cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
-    return [(i, a, b) for i, a, b in cut if b - a > 1e-6]

@@ -41,6 +41,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     turned = direction.forward != (direction.handedness == "rht")
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
+    for lane in built:
+        if lane.drivable and lane.lane.is_access_unread:
+            message = "its <access> keeps cars out at a place or in a way that is not read: who may use it is not known"
+            quality.add("access_unread", "warning", lane.lanelet_id, message)
     recorded = [row for lane in built for row in recorded_limit_rows(lane)]
     beside = furniture_rows(net, built, request.offset, quality)
     limits = speed_limit_rows(built, lane_links, beside["traffic_signal"], recorded, quality)
