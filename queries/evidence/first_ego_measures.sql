@@ -24,7 +24,7 @@ soonest AS (
     JOIN ego_step e ON e.drive_id = v.drive_id AND e.ego_id = v.ego_id AND e.t_ns = v.t_ns
     JOIN pair_of_ego p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
     -- A longer time comes from a difference of the speeds that no log resolves.
-    WHERE v.time_s <= 600.0 AND may_touch(v.passes_by, v.grazes) AND either_moves(v.ego_speed_mps, v.speed_mps)
+    WHERE v.time_s <= 600.0 AND must_keep(v.passes_by, v.grazes, v.time_s >= serious_ttc_s()) AND either_moves(v.ego_speed_mps, v.speed_mps)
         AND on_course(
             v.gap_m, v.time_s, e.d_m, e.lat_half_m, e.speed_mps * sin(e.heading_diff_rad),
             p.d_m, p.lat_half_m, p.speed_mps * sin(p.heading_diff_rad)

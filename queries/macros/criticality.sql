@@ -28,6 +28,8 @@ CREATE OR REPLACE MACRO unless_in_doubt(applies, doubt_mps) AS CASE WHEN applies
 
 -- Whether the two may still touch: false if it is known that they pass each other, unknown if they may graze each other.
 CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
+-- The limit of criticality.ttc by default, for what plots the time that the rule judges.
+CREATE OR REPLACE MACRO serious_ttc_s() AS 1.5;
 -- Whether a limit must be kept: who may graze another keeps it either way while the measure does.
 CREATE OR REPLACE MACRO must_keep(passes_by, grazes, keeps) AS may_touch(passes_by, coalesce(grazes, false) AND NOT coalesce(keeps, false));
 

@@ -56,7 +56,7 @@ def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
     with dask(tmp_path, 1) as cluster:
         command = drives.command(tmp_path / "out", "--cluster", cluster.address, "--memory", "200MB")
         running = subprocess.Popen([sys.executable, "-m", "drivelint", *command], stderr=subprocess.PIPE)
-        time.sleep(3.0)
+        _until((tmp_path / "out").exists, "the audit has begun")
         cluster.scheduler.send_signal(signal.SIGKILL)
         said = running.communicate(timeout=120)[1].decode()
     assert running.returncode == ExitCode.TEMPFAIL, said
