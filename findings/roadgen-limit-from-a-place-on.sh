@@ -2,7 +2,7 @@
 # roadgen 0.41.2: an OpenDRIVE map by `read_opendrive`, written as Lanelet2, SUMO and OpenDRIVE: limits of a lane that begin at a place, and lanes for some only.
 #
 # Expected: OpenDRIVE's `<speed sOffset="100">` holds from 100 m on. A lane of 300 m with 120 km/h, and 30 km/h from 100 m on, has both limits in what is written,
-# or `read_warnings` has "one line per thing the map now says less exactly than the file did", as it has for a marking, a width or a road's type that changes.
+# or a line of `read_warnings` says what is lost, as its documentation promises and as it is done for a marking, a width or a type of road that changes on the way.
 # Seen, with not one line of this:
 #   1. The first `<speed>` of a lane holds all along: in the zone of 30 km/h the limit is 120 km/h; where a zone of 30 km/h ends at 100 m, it goes on for 200 m.
 #   2. So does one that begins at 100 m: with 120 km/h of the road's type before it, the lane has 30 km/h from its beginning.
