@@ -33,6 +33,11 @@ CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s, concerns) AS
 CREATE OR REPLACE MACRO met_reason(object_id, pet_s, decel_mps2) AS CASE WHEN object_id IS NOT NULL AND pet_s IS NOT NULL THEN
     why(CASE WHEN pet_s < 0 THEN 'met_at_same_time' ELSE 'met_later' END, {'object_id': object_id, 'pet_s': pet_s, 'decel_mps2': decel_mps2}) END;
 
+-- Why it is not known whether an actor that came late enough braked for the ego: it braked harder than `hard_mps2`, and was not made to
+-- brake (made_to_brake). NULL: it did not brake so hard, or came too soon.
+CREATE OR REPLACE MACRO braking_doubt(object_id, pet_s, decel_mps2, hard_mps2, enough_s) AS CASE WHEN decel_mps2 > hard_mps2 AND pet_s >= enough_s THEN
+    why('braked_and_came_later', {'object_id': object_id, 'decel_mps2': decel_mps2, 'pet_s': pet_s}) END;
+
 -- Whether the ego made an actor brake: the actor braked harder than `hard_mps2`, and at its speed it would have come within `enough_s` of
 -- the ego. NULL: it may have braked for something else.
 CREATE OR REPLACE MACRO made_to_brake(decel_mps2, pet_s, other_cause, hard_mps2, enough_s) AS

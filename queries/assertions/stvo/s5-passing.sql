@@ -1,7 +1,7 @@
 -- title = "Space for cyclists and people on foot"
 -- breach = "Passed cyclists or people on foot too closely"
--- clause = "StVO 5(4): overtake people on foot, on bicycles and on small electric vehicles with at least 1.5 m in built-up areas and 2 m elsewhere"
--- hypothesis = "At every step beside a slower cyclist or pedestrian on the road who goes the same way, did the ego keep the distance?"
+-- clause = "StVO 5(4): in a motor vehicle, overtake people on foot, on bicycles and on small electric vehicles with at least 1.5 m in built-up areas and 2 m elsewhere"
+-- hypothesis = "At every step beside a slower cyclist or pedestrian on the road who goes the same way, did the ego, no bicycle itself, keep the distance?"
 -- kind = "invariant"
 -- derivation = "direct"
 -- severity = "critical"
@@ -43,9 +43,11 @@
 -- @applies
 -- A cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing that cyclist is overtaking is disputed.
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id,
-    (is_bicycle(b.actor_class, a.length_m) OR is_class(b.actor_class, 'pedestrian')) AND b.along AND b.on_carriageway AND CASE WHEN coalesce(b.cycle_lane, 'broken') = 'broken' THEN true END AND b.ego_speed_mps > b.speed_mps AND CASE WHEN w.object_id IS NULL THEN true WHEN w.has_waited THEN false END AS applies
+    (is_bicycle(b.actor_class, a.length_m) OR is_class(b.actor_class, 'pedestrian')) AND b.along AND b.on_carriageway AND CASE WHEN coalesce(b.cycle_lane, 'broken') = 'broken' THEN true END AND b.ego_speed_mps > b.speed_mps
+        AND (x.actor_id IS NULL OR NOT is_bicycle(x.actor_class, x.length_m)) AND CASE WHEN w.object_id IS NULL THEN true WHEN w.has_waited THEN false END AS applies
 FROM beside b
 LEFT JOIN road_user a ON a.drive_id = b.drive_id AND a.actor_id = b.object_id
+LEFT JOIN road_user x ON x.drive_id = b.drive_id AND x.actor_id = b.ego_id
 LEFT JOIN (
     SELECT s.drive_id, s.ego_id, o.object_id, s.t_start_ns, s.t_end_ns,
         bool_or(o.speed_mps <= standing_mps()) OR s.junction_id IS NOT NULL OR s.junction_m <= $junction_m AS has_waited

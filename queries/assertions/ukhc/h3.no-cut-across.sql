@@ -41,12 +41,13 @@ judged_encounter AS (
         -- not to be broken.
         CASE WHEN turn IS NULL THEN NULL
             WHEN is_forced AND braked_class IN ('bicycle', 'animal') THEN CASE WHEN NOT is_at_fork THEN false END
-            WHEN actor_class IN ('bicycle', 'animal') OR (pet_s >= $pet_s AND decel_mps2 <= $decel_mps2)
-            THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND CASE WHEN NOT is_forced THEN true END OR CASE WHEN NOT is_at_fork THEN false END END AS kept,
+            -- An actor that came late enough and braked hard may have braked for something else, if the ego did not make it brake.
+            WHEN actor_class IN ('bicycle', 'animal') OR pet_s >= $pet_s
+            THEN pet_s >= $pet_s AND CASE WHEN decel_mps2 <= $decel_mps2 THEN true END AND CASE WHEN NOT is_forced THEN true END OR CASE WHEN NOT is_at_fork THEN false END END AS kept,
         CASE WHEN turn IS NULL THEN why('turn_unseen')
             WHEN is_at_fork AND object_id IS NOT NULL AND kept IS NULL THEN fork_doubt()
             WHEN is_forced IS DISTINCT FROM false THEN braked_reason
-            ELSE coalesce(met_reason(object_id, pet_s, decel_mps2), reason) END AS reason_given
+            ELSE coalesce(braking_doubt(object_id, pet_s, decel_mps2, $decel_mps2, $pet_s), met_reason(object_id, pet_s, decel_mps2), reason) END AS reason_given
     FROM encounter
 )
 -- Of the two relations, along the ego's way and towards it, the worse one counts.

@@ -36,10 +36,6 @@
 -- unit = "m/s"
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
--- [reasons.oncoming_braked]
--- says = "{object_id} braked at {decel_mps2:.1f} m/s2 and came {pet_s:.1f} s after the ego: it is not known whether it braked for the ego"
--- advice = "a person must judge this"
---
 -- [reasons.came_by]
 -- says = "{object_id} passed with {room_m:.2f} m between"
 --
@@ -144,7 +140,7 @@ SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, o.v_vbp_mps <= standing_mps() AS 
             THEN CASE WHEN m.least.passes THEN why('came_by', m.least) ELSE why('ran_into', m.least) END
         WHEN f.words IS NOT NULL THEN f.words
         WHEN coalesce(bool_or(c.decel_mps2 > $decel_mps2), false)
-            THEN min({'ease_mps2': -c.decel_mps2, 'words': why('oncoming_braked', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2, 'pet_s': c.pet_s})})
+            THEN min({'ease_mps2': -c.decel_mps2, 'words': why('braked_and_came_later', {'object_id': c.object_id, 'decel_mps2': c.decel_mps2, 'pet_s': c.pet_s})})
                 FILTER (c.decel_mps2 > $decel_mps2).words
         WHEN o.t3_ns IS NULL THEN why('return_unseen')
         WHEN v.ref_id IS NOT NULL THEN why('object_lacks_unbroken', v.unplaced)

@@ -25,8 +25,7 @@
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.control, c.relation, c.reason,
-    CASE WHEN is_vehicle(c.actor_class) OR c.decel_mps2 <= $decel_mps2 THEN c.decel_mps2 END AS decel_mps2,
-    c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause, made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS forced,
+    c.decel_mps2, c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause, made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced THEN c.braked_id ELSE c.object_id END AS object_id,
     pet_known(c.pet_s, c.reason, $pet_s, is_vehicle(c.actor_class)) AS pet_s
 FROM junction_passage p
@@ -35,8 +34,9 @@ LEFT JOIN passage_conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id 
 WHERE coalesce(p.control, 'give_way') = 'give_way'
 
 -- @condition
-SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN control IS NOT NULL THEN pet_s >= $pet_s AND decel_mps2 <= $decel_mps2 AND NOT forced END AS holds,
+-- An actor that came late enough and braked hard may have braked for something else, if the ego did not make it brake.
+SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN control IS NOT NULL THEN pet_s >= $pet_s AND CASE WHEN decel_mps2 <= $decel_mps2 THEN true END AND NOT forced END AS holds,
     CASE WHEN control IS NULL THEN why('way_in_control_unknown')
         WHEN forced IS DISTINCT FROM false THEN braked_reason(braked_id, braked_pet_s, braked_mps2, braked_cause)
-        ELSE coalesce(met_reason(object_id, pet_s, decel_mps2), reason) END AS reason
+        ELSE coalesce(braking_doubt(object_id, pet_s, decel_mps2, $decel_mps2, $pet_s), met_reason(object_id, pet_s, decel_mps2), reason) END AS reason
 FROM reference
