@@ -51,6 +51,25 @@ def test_lanelets_and_what_lies_on_them() -> None:
 
 
 @pytest.mark.parametrize(
+    ("users", "lane_type", "drivable", "unread"),
+    [
+        ("<userOneWay>vehicle</userOneWay>", "driving", True, []),
+        ("<userOneWay>car</userOneWay><userOneWay>bus</userOneWay>", "driving", True, []),
+        ("<userOneWay>bus</userOneWay><userOneWay>bicycle</userOneWay>", "bus", True, []),
+        ("<userOneWay>taxi</userOneWay>", "taxi", True, []),
+        ("<userBidirectional>bicycle</userBidirectional>", "biking", False, []),
+        ("<userOneWay>train</userOneWay>", "rail", False, []),
+        ("<userOneWay>truck</userOneWay>", "driving", True, ["1"]),
+        ("<laneletType>exitRamp</laneletType><userOneWay>bus</userOneWay>", "exit", True, []),
+    ],
+)
+def test_who_may_use_a_lanelet(users: str, lane_type: str, drivable: bool, unread: list[str]) -> None:
+    environment = load(scenario(lanelet(1, 0.0, users), lanelet(2, -3.5)))
+    assert values(environment, "lanelet", "lane_type drivable", lanelet_id="1") == [(lane_type, drivable)]
+    assert values(environment, "map_quality", "lanelet_id", check_id="access_unread") == unread
+
+
+@pytest.mark.parametrize(
     ("direction", "turns"),
     [
         ("<direction>leftStraight</direction>", ["left", "straight"]),

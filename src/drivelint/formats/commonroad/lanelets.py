@@ -45,7 +45,9 @@ _LANE_TYPE_BY_LANELET_TYPE = {
     "sidewalk": "sidewalk", "busLane": "bus", "bicycleLane": "biking", "exitRamp": "exit", "accessRamp": "entry",
     "shoulder": "shoulder", "border": "border", "parking": "parking", "restricted": "restricted",
 }  # fmt: skip
-_UNDRIVABLE_LANE_TYPES = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted"})
+_LANE_TYPE_BY_USER = {"bus": "bus", "taxi": "taxi", "bicycle": "biking", "pedestrian": "sidewalk", "train": "rail"}
+"""The type of a lanelet that cars may not use, by the first of these that may."""
+_UNDRIVABLE_LANE_TYPES = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted", "rail"})
 _ROAD_TYPE_BY_LANELET_TYPE = {"interstate": "motorway", "highway": "motorway", "country": "rural", "urban": "town"}
 _READ_LANELET_TYPES = {
     *_LANE_TYPE_BY_LANELET_TYPE,
@@ -73,7 +75,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     for element in root.findall("lanelet"):
         try:
             kinds = [t.text or "" for t in element.findall("laneletType")]
-            (walks if "crosswalk" in kinds else built).append(_bounded_lane(element, kinds, signs))
+            (walks if "crosswalk" in kinds else built).append(_bounded_lane(element, kinds, signs, quality))
         except (ValueError, KeyError) as error:
             name = element.get("id") or f"in line {element.sourceline}"
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
@@ -137,8 +139,17 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     return GeoFrame(reference, x, y)
 
 
-def _bounded_lane(element: etree._Element, lanelet_types: Sequence[str], signs: MapSigns) -> BoundedLane:
-    kind = next((_LANE_TYPE_BY_LANELET_TYPE[k] for k in lanelet_types if k in _LANE_TYPE_BY_LANELET_TYPE), "driving")
+def _bounded_lane(
+    element: etree._Element, lanelet_types: Sequence[str], signs: MapSigns, quality: MapQuality
+) -> BoundedLane:
+    kind = next((_LANE_TYPE_BY_LANELET_TYPE[k] for k in lanelet_types if k in _LANE_TYPE_BY_LANELET_TYPE), None)
+    users = {(e.text or "").strip() for name in ("userOneWay", "userBidirectional") for e in element.findall(name)}
+    if kind is None and users and not users & {"vehicle", "car"}:
+        kind = next((kind for user, kind in _LANE_TYPE_BY_USER.items() if user in users), None)
+        if kind is None:
+            message = f"cars may not use it ({', '.join(sorted(users))} may), which no lane type shows"
+            quality.add("access_unread", "warning", str(element.attrib["id"]), message)
+    kind = kind or "driving"
     limit_mps, limit_source = signs.speed_limit(element)
     left, right = element.find("leftBound"), element.find("rightBound")
     lane = BoundedLane(
