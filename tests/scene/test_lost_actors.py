@@ -35,13 +35,6 @@ EVIDENCE: Final = {
     ("brakes-late", "criticality.mttc"): "134 m ahead, ten seconds before: who is lost there may have left the road",
 }
 """(scene, rule) -> why the rule need not be broken nor unknown any more."""
-LEFT: Final = {
-    (
-        "gb-left-hook-nameless",
-        "ukhc.r182.no-pass-before-turn",
-    ): "a bicycle without a class, headed backwards, without a speed",
-}
-"""The same where the rule passes although it should not."""
 
 
 def drawn(scene: Scene, folder: Path) -> Drive:
@@ -150,4 +143,4 @@ def test_what_is_broken_by_an_actor_is_broken_or_unknown_when_the_actor_is_lost(
     clear = {
         tuple(key.split("/")) for key, verdicts in said(drives, about).items() if not verdicts & {"fail", "unknown"}
     }
-    assert not {key for key in clear if key[:2] not in EVIDENCE | LEFT}
+    assert not {key for key in clear if key[:2] not in EVIDENCE}

@@ -23,7 +23,7 @@
 -- An occasion is the begin of a sound, and each step at which the ego comes to stand, or may do so, while it lasts.
 SELECT drive_id, ego_id, t_ns, min(t_ns) OVER sound AS t_from_ns
 FROM (
-    SELECT drive_id, ego_id, t_ns, m.is_on, coalesce(e.speed_mps <= standing_mps(), true) AS may_stand,
+    SELECT drive_id, ego_id, t_ns, m.is_on, e.speed_mps <= standing_mps() AS stands,
         count(*) FILTER (m.is_on IS DISTINCT FROM true) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS n_silent
     FROM ego_mode m
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
@@ -31,7 +31,7 @@ FROM (
 )
 WHERE is_on
 WINDOW sound AS (PARTITION BY drive_id, ego_id, n_silent ORDER BY t_ns)
-QUALIFY t_ns = t_from_ns OR may_stand AND lag(may_stand) OVER sound IS DISTINCT FROM true
+QUALIFY t_ns = t_from_ns OR stands IS DISTINCT FROM false AND stands IS DISTINCT FROM lag(stands) OVER sound
 
 -- @condition
 -- The ban on the horn from 23:30 to 7:00 is not judged: these hours are local time, which logs do not have.

@@ -59,5 +59,9 @@ LEFT JOIN (
     GROUP BY p.drive_id, p.ego_id, p.t_ns, side
 ) p
     ON p.drive_id = rs.drive_id AND p.ego_id = rs.ego_id AND p.t_ns = rs.t_ns AND p.side = r.side
-LEFT JOIN (SELECT DISTINCT drive_id, ego_id, t_ns FROM beside WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian') b
+-- An actor without a class and a speed may go backwards, and then along the ego's way.
+LEFT JOIN (
+    SELECT DISTINCT drive_id, ego_id, t_ns FROM beside
+    WHERE gap_m IS NULL AND coalesce(actor_class, '') <> 'pedestrian' OR actor_class IS NULL AND speed_mps IS NULL AND NOT along
+) b
     ON b.drive_id = rs.drive_id AND b.ego_id = rs.ego_id AND b.t_ns = rs.t_ns
