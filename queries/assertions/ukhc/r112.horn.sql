@@ -24,7 +24,7 @@
 SELECT drive_id, ego_id, t_ns, min(t_ns) OVER sound AS t_from_ns
 FROM (
     SELECT drive_id, ego_id, t_ns, m.is_on, e.speed_mps <= standing_mps() AS stands,
-        count(*) FILTER (m.is_on IS DISTINCT FROM true) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns) AS n_silent
+        sum(CASE WHEN m.is_on THEN 0 ELSE 1 END) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n_silent
     FROM ego_mode m
     LEFT JOIN ego_state e USING (drive_id, ego_id, t_ns)
     WHERE m.mode = 'horn'
