@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -62,7 +63,7 @@ def check(files: Files, out: Path, *, rules: tuple[str, ...] = (OVERTAKES, COLLI
 def _overtakes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, int, str], dict[str, Any]]:
     rows = con.execute(
         """
-        SELECT o.ego_id, o.t0_ns, o.vbp_id, o.ov_id, o.da_m, o.t3_ns, o.passed, s.profile, s.sda_m, v.verdict, v.reason,
+        SELECT o.ego_id, o.t0_ns, o.vbp_id, o.ov_id, o.da_m, o.t3_ns, o.passed, s.profile, s.sda_m, v.verdict, v.reason, v.cause_args,
             (SELECT list(u.object_id) FROM unplaced u WHERE u.ego_id = o.ego_id AND u.t_ns = o.t0_ns) AS unplaced
         FROM overtake o
         JOIN overtake_sda s USING (drive_id, ego_id, occurrence)
@@ -78,7 +79,7 @@ def _overtakes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, int, str], dic
         {"rule": OVERTAKES, "profiles": list(PROFILES)},
     ).fetchall()
     found: dict[tuple[str, int, str], dict[str, Any]] = {}
-    for ego, t0, vbp, ov, da, t3, passed, profile, sda, verdict, reason, unplaced in rows:
+    for ego, t0, vbp, ov, da, t3, passed, profile, sda, verdict, reason, cause, unplaced in rows:
         row = found.setdefault(
             (ego, round(t0 / 1e8), vbp),
             {
@@ -91,7 +92,7 @@ def _overtakes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, int, str], dic
                 "verdicts": {},
             },
         )
-        row["sda_m"][profile], row["verdicts"][profile] = sda, (verdict, reason)
+        row["sda_m"][profile], row["verdicts"][profile] = sda, (verdict, reason, json.loads(cause or "{}"))
     return found
 
 
@@ -119,14 +120,14 @@ def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[
             found.append(f"{key}: DA {mine.da_m:.2f} m read, {theirs['da_m']:.2f} m found")
         counts[f"back {_later(mine.t3, theirs['t3'])}"] += 1
         for profile in PROFILES:
-            verdict, reason = theirs["verdicts"][profile]
+            verdict, reason, cause = theirs["verdicts"][profile]
             counts[f"{profile}: {verdict}"] += 1
             if verdict == mine.verdicts[profile]:
                 continue
             # near its end the road beyond is not told: somebody came in over it soon after
             if (
                 (mine.verdicts[profile], verdict) == ("pass", "unknown")
-                and "appeared" in reason
+                and cause.get("lack") == "appeared"
                 and mine.end_m < OPEN_M
             ):
                 counts["open, near the road's end"] += 1
@@ -138,11 +139,11 @@ def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[
                 continue
             # and does not know how far off another entered or left, as the ego is moved just then
             at_edge = any(
-                f"actor {other} {what}" in reason and abs(step - at) <= 1
+                (cause.get("object_id"), cause.get("lack")) == (other, what) and abs(step - at) <= 1
                 for who, step in moves
                 if who == key[0]
                 for other, both in ends.items()
-                for what, at in zip(("appeared", "was lost"), both, strict=True)
+                for what, at in zip(("appeared", "lost"), both, strict=True)
             )
             if (mine.verdicts[profile], verdict) == ("pass", "unknown") and at_edge:
                 counts["SUMO moves the ego as somebody enters or leaves"] += 1
