@@ -92,7 +92,7 @@ def _overtakes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, int, str], dic
                 "verdicts": {},
             },
         )
-        row["sda_m"][profile], row["verdicts"][profile] = sda, (verdict, reason, json.loads(cause or "{}"))
+        row["sda_m"][profile], row["verdicts"][profile] = sda, (verdict, reason, _innermost(cause))
     return found
 
 
@@ -150,6 +150,13 @@ def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[
                 continue
             found.append(f"{key} {profile}: {mine.verdicts[profile]} read, {verdict} found ({reason})")
     return found, counts
+
+
+def _innermost(cause_args: str | None) -> dict[str, Any]:
+    """Return the arguments of a cause; where its `lack` is a reason of its own, those of that."""
+    args: dict[str, Any] = json.loads(cause_args or "{}")
+    lack = args.get("lack") or ""
+    return _innermost(json.dumps(json.loads(lack)["args"])) if lack.startswith("{") else args
 
 
 def _later(read: float | None, found: float | None) -> str:
