@@ -24,14 +24,14 @@ ELONGATED_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "
 """Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
 SLIM_CLASSES: Final = frozenset({"bicycle", "motorcycle", "animal"})
 MOST_SLIM_WIDTH_M: Final = 1.2
-"""A two-wheeler or a horse that is wider than this, and wider than long, is not the box of a rider's body: its sides are exchanged. Of who
-is of unknown class, and moves, it may also be that a detector saw the rear alone: the sizes are unknown."""
+"""A two-wheeler or a horse that is wider than this, and wider than long, is not the box of a rider's body: its sides are exchanged. A body
+of unknown class that moves may also be a car of which the detector saw the rear alone: its sizes are unknown."""
 MOST_WIDTH_PER_LENGTH: Final = 1.1
 """A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
 LEAST_SPEED_WITH_DIRECTION_MPS: Final = 2.0
 """Above this speed, the velocity of a box shows its direction of motion."""
 LEAST_SPEED_OF_DOUBT_MPS: Final = 1.0
-"""Above this speed, what is of unknown class shows well enough along which side it moves to doubt its box."""
+"""Above this speed, a body of unknown class shows its direction of motion well enough to doubt its box."""
 LEAST_MOVING_SAMPLES: Final = 5
 MOST_ANGLE_ALONG_HEADING_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
@@ -159,7 +159,7 @@ def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     turned, dropped_sizes = too_wide.copy(), too_wide.copy()
     if too_wide.any():
         along = np.isin(actors.ids, _actors_moving_along_heading(states, LEAST_SPEED_WITH_DIRECTION_MPS))
-        # who is of unknown class and does not move along its heading may be a barrier
+        # A body of unknown class that does not move along its heading may be a barrier.
         in_doubt = np.isin(actors.ids, _actors_moving_along_heading(states, LEAST_SPEED_OF_DOUBT_MPS))
         turned &= along & ~unnamed
         dropped_sizes &= np.where(unnamed, in_doubt, ~along)

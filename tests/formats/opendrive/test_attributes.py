@@ -75,8 +75,12 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
             "driving",
             True,
         ),
-        # before OpenDRIVE 1.5
+        # before OpenDRIVE 1.5, and a rule that the standard does not have
         ('<access restriction="bus"/>', "driving", True),
+        ('<access rule="permit" restriction="bus"/>', "driving", True),
+        # cars of some kind alone
+        ('<access rule="allow" restriction="autonomousTraffic"/>', "driving", True),
+        ('<access rule="deny" restriction="throughTraffic"/>', "driving", True),
     ],
 )
 def test_who_may_use_a_lane(access: str, lane_type: str, unread: bool) -> None:

@@ -1,4 +1,4 @@
-"""Who may use a lane: OpenDRIVE's `<access>`, which older files have instead of the lane types `bus` and `taxi`."""
+"""Reads who may use a lane from OpenDRIVE's `<access>`. Files without the lane types `bus` and `taxi` state such lanes by it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from drivelint.formats.opendrive.xml import number_attribute
 if TYPE_CHECKING:
     from lxml import etree
 
-_CARS: Final = frozenset({"passengerCar", "autonomousTraffic", "autonomous traffic", "throughTraffic", "simulator"})
-"""The words of ASAM OpenDRIVE (e_accessRestrictionType) for a car; `none` restricts nothing."""
+_CAR: Final = "passengerCar"
+_SOME_CARS: Final = frozenset({_CAR, "autonomousTraffic", "autonomous traffic", "throughTraffic", "simulator"})
+"""The words of ASAM OpenDRIVE (e_accessRestrictionType) for a car, and for cars of some kind; `none` restricts nothing."""
 
 
 def lane_type_and_unread(lane: etree._Element, lane_type: str) -> tuple[str, bool]:
@@ -28,12 +29,13 @@ def lane_type_and_unread(lane: etree._Element, lane_type: str) -> tuple[str, boo
         if not words:
             continue
         stations.add(number_attribute(access, "sOffset", 0.0))
-        # before OpenDRIVE 1.5 an access had no rule: it is not stated whether the word is for who may, or for who may not
-        for rule, of_rule in (("allow", allowed), ("deny", denied)):
-            if access.get("rule", rule) == rule:
-                of_rule.update(words)
-    keeps_cars_out = bool(allowed) and (not allowed & _CARS or bool(denied & _CARS) or len(stations) > 1)
-    if not keeps_cars_out and not denied & _CARS:
+        # Before OpenDRIVE 1.5 an access had no rule: its words may be those of either.
+        if access.get("rule") != "deny":
+            allowed |= words
+        if access.get("rule") != "allow":
+            denied |= words
+    cars_are_allowed = not allowed or (_CAR in allowed and len(stations) == 1)
+    if cars_are_allowed and not denied & _SOME_CARS:
         return lane_type, False
     if lane_type == "driving" and stations == {0.0} and not denied:
         for word in ("bus", "taxi"):
