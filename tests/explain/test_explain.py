@@ -210,6 +210,18 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     assert "SELECT" not in text
 
 
+def test_a_rule_that_did_not_run_as_the_log_lacks_its_signal(tmp_path: Path) -> None:
+    check(tmp_path / "out", traces=SAFE, rules=("ukhc.r112*",), params=())
+    found = of(tmp_path / "out", "r112.horn@safe")
+    assert (found.verdict["verdict"], found.verdict["reason_code"]) == ("not_applicable", "unrecorded_mode_horn")
+    assert (found.sensitivity, found.changes, [table.table for table in found.rows]) == (None, [], ["capability"])
+    text = flat(said(found))
+    assert "NOT APPLICABLE: the log does not contain a signal that the rule needs" in text
+    assert "What would decide it When horn is on, as declared events horn with the values on and off" in text
+    assert "The rule reads the event horn (value: on, off)" in text
+    assert "The rule was not run: the log or the map lacks a signal that it requires." in text
+
+
 @pytest.mark.slow
 def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path) -> None:
     rule = tmp_path / "packs" / "mine" / "wet.sql"

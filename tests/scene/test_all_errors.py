@@ -91,6 +91,15 @@ def test_unknown_rules_and_verdicts(tmp_path: Path) -> None:
     ]
 
 
+def test_a_wrong_name_of_a_scene_names_the_nearest(tmp_path: Path) -> None:
+    file = tmp_path / "scenes.yml"
+    file.write_text(SCENES, encoding="utf-8")
+    for name, meant in (("oen", "; did you mean 'one'?"), ("parked", "")):
+        with pytest.raises(UsageError) as refused:
+            scene_test(file, (name,), (), print)
+        assert str(refused.value) == f"{file}: none of its 1 scenes has such a name{meant}"
+
+
 @pytest.mark.ci
 def test_the_command_prints_a_line_per_problem(tmp_path: Path) -> None:
     file = tmp_path / "scenes.yml"

@@ -24,6 +24,13 @@ SELECT drive_id, t_ns FROM ego_state WHERE speed_mps < 0.1
 """
 
 
+def _parts(missing: str) -> str:
+    return (
+        "write a comment, `-- lifetime: part`, `CREATE TABLE standing (`, `);`, an empty line, "
+        f"`INSERT INTO standing BY NAME` and a SELECT; the first that is missing, or not in its place: {missing}"
+    )
+
+
 def read(folder: Path, monkeypatch: pytest.MonkeyPatch, change: tuple[str, str]) -> library.LibraryTable:
     """Read a library that has this one file, with a change of its text."""
     (folder / "library" / "motion").mkdir(parents=True)
@@ -46,9 +53,15 @@ def test_the_parts_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("-- lifetime: part\n", ""), "write a comment, `-- lifetime: part`, `CREATE TABLE standing (`"),
-        (("INSERT INTO standing", "INSERT INTO stands"), "write a comment, `-- lifetime: part`, "),
-        (("lifetime: part", "lifetime: step"), "no lifetime 'step': known are map, drive, part, run; "),
+        (("-- The steps at which the ego stands.\n", ""), _parts("a comment")),
+        (("-- lifetime: part\n", ""), _parts("`-- lifetime: part`")),
+        (("CREATE TABLE standing", "CREATE TABLE stands"), _parts("`CREATE TABLE standing (`")),
+        ((");\n", ")\n"), _parts("`);`")),
+        ((");\n\n", ");\n"), _parts("an empty line")),
+        (("INSERT INTO standing", "INSERT INTO stands"), _parts("`INSERT INTO standing BY NAME`")),
+        ((FILE[FILE.index("SELECT") :], ""), _parts("a SELECT")),
+        (("lifetime: part", "lifetime: step"), "lifetime 'step' is none of the library: known are part, map, run; "),
+        (("lifetime: part", "lifetime: drive"), "lifetime 'drive' is none of the library: known are part, map, run; "),
         (("        -- the drive", ""), "column drive_id has no comment: write `-- ` and what it is after it"),
         (("              -- the step", ""), "column t_ns has no comment: "),
         (

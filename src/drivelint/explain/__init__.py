@@ -30,7 +30,7 @@ from drivelint.explain.source import open_judged_drive_and_source_text
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, shortest_part_with_same_verdict
 from drivelint.reasons import reason_text
-from drivelint.reasons.signals import unknown_condition_column
+from drivelint.reasons.signals import missing_signal, unknown_condition_column
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
 
@@ -97,12 +97,12 @@ def explain(request: ExplainRequest) -> Explanation:
         series = evidence.judged_steps(case.rule, target, judged)
         decides = _deciding_time_ns(target, series, now)
         parts = evidence.required_value_parts(case.rule, target, sandbox, case.params, decides)
-        missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
+        lacking = missing_signal(row["reason_code"]) if lacks_signal(row) else None
         condition = (
             unknown_condition_column(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         )
         rows = evidence.rows_read_by_rule(
-            case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
+            case.rule, target, sandbox, decides, missing_signal=lacking, condition=condition
         )
         changes: list[NearestChange] = []
         sensitivity = None

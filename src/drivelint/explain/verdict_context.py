@@ -10,6 +10,7 @@ from drivelint.engine.batch import have_few_states
 from drivelint.engine.robustness.copies import crop
 from drivelint.explain import evidence
 from drivelint.explain.sandbox import Sandbox
+from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX
 from drivelint.result.counts import group_rows
 from drivelint.sql import store
 
@@ -67,9 +68,10 @@ class VerdictContext:
 
 
 def lacks_signal(row: Row) -> bool:
-    """Return whether a verdict is unknown because a required signal is missing; the rule then did not run."""
+    """Return whether a required signal is missing: the rule then did not run. Its verdict is unknown, or not applicable (unrecorded)."""
     code: str = row["reason_code"]
-    return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
+    is_missing = row["verdict"] == "unknown" and code.startswith(MISSING_PREFIX) and code != "missing_step"
+    return is_missing or (row["verdict"] == "not_applicable" and code.startswith(UNRECORDED_PREFIX))
 
 
 def shortest_part_with_same_verdict(

@@ -44,9 +44,12 @@ REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 def signal_name(reason_code: str) -> str:
     """Return the name of the missing signal in a reason code, or the code itself, with spaces for underscores."""
-    return (
-        reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
-    )
+    return missing_signal(reason_code).removeprefix("mode_").replace("_", " ")
+
+
+def missing_signal(reason_code: str) -> str:
+    """Return the missing signal in a reason code, or the code itself."""
+    return reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX)
 
 
 def unknown_signal_message(signal: str) -> str | None:
@@ -71,12 +74,9 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
 
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
-    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: its cause's advice."""
+    """Return what would decide a verdict with this reason code, for a log of this format. `advice`: its cause's advice."""
     if code.startswith((MISSING_PREFIX, UNRECORDED_PREFIX)) and code not in REMEDIES:
-        return (
-            how_to_provide(code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX), log_format, advice)
-            + _AGAIN
-        )
+        return how_to_provide(missing_signal(code), log_format, advice) + _AGAIN
     condition = code.removesuffix("_unknown")
     if condition in DRIVE_CONDITION_VALUES or condition == "limit":
         return (

@@ -171,7 +171,9 @@ def scene_test(
     file = document.read(path)
     texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
     if not texts:
-        raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name")
+        near = [word for name in only if (word := nearest_word(name, (text.name for text in file.scenes)))]
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name{meant}")
     rules = catalogue.load_rules(tuple(rules_dirs))
     scenes = scenes_of(texts, file.roads)
     _refuse_wrong_expectations(path, texts, rules)

@@ -25,6 +25,8 @@ _FILE: Final = re.compile(
 TABLE_LIFETIMES: Final = ("map", "drive", "part", "run")
 """How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
 one part of a drive are judged. `run`: until the end of the run."""
+_LIFETIMES_OF_LIBRARY_TABLES: Final = ("part", "map", "run")
+"""Those that the SELECT of a library table can have: `drive` is of the tables of the log, which `schemas` declares."""
 QUANTITIES: Final = ("position", "heading", "velocity", "size", "class", "existence", "identity")
 """The quantities of an actor that a check of the log can doubt: what the end of a column's comment may name."""
 _COLUMN_WITH_QUANTITIES: Final = re.compile(r"^    (\w+) .* -- .*\{([^{}\n]*)\}\s*$", re.MULTILINE)
@@ -62,16 +64,18 @@ def library_tables() -> dict[str, LibraryTable]:
 
 
 def _read_file(file: Path) -> LibraryTable:
-    found = _FILE.match(file.read_text(encoding="utf-8"))
+    text = file.read_text(encoding="utf-8")
+    found = _FILE.match(text)
     if found is None or not found[4] == found[5] == file.stem:
         raise DriveLintError(
             f"{file}: write a comment, `-- lifetime: part`, `CREATE TABLE {file.stem} (`, `);`, an empty line, "
-            f"`INSERT INTO {file.stem} BY NAME` and a SELECT"
+            f"`INSERT INTO {file.stem} BY NAME` and a SELECT; "
+            f"the first that is missing, or not in its place: {_first_missing_part(text, file.stem)}"
         )
-    if found[3] not in TABLE_LIFETIMES:
-        known = ", ".join(TABLE_LIFETIMES)
+    if found[3] not in _LIFETIMES_OF_LIBRARY_TABLES:
+        known = ", ".join(_LIFETIMES_OF_LIBRARY_TABLES)
         raise DriveLintError(
-            f"{file}: no lifetime {found[3]!r}: known are {known}; a table of a SELECT on the egos' steps has part"
+            f"{file}: lifetime {found[3]!r} is none of the library: known are {known}; a table of a SELECT on the egos' steps has part"
         )
     if bare := _UNCOMMENTED_COLUMN.search(found[2]):
         raise DriveLintError(
@@ -84,3 +88,22 @@ def _read_file(file: Path) -> LibraryTable:
             )
     description = " ".join(line.removeprefix("--").strip() for line in found[1].splitlines())
     return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[6])
+
+
+def _first_missing_part(text: str, table: str) -> str:
+    """Return the first part of a library file that does not follow the parts before it."""
+    name = re.escape(table)
+    patterns = {
+        "a comment": r"(?:--(?! lifetime:)[^\n]*\n)+",
+        "`-- lifetime: part`": r"-- lifetime: \w+\n",
+        f"`CREATE TABLE {table} (`": rf"CREATE TABLE {name} \(\n",
+        "`);`": r".*?^\);\n",
+        "an empty line": r"\n",
+        f"`INSERT INTO {table} BY NAME`": rf"INSERT INTO {name} BY NAME\n",
+    }
+    before = ""
+    for part, pattern in patterns.items():
+        before += pattern
+        if re.match(before, text, re.DOTALL | re.MULTILINE) is None:
+            return part
+    return "a SELECT"
