@@ -6,6 +6,7 @@ import dataclasses
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -472,3 +473,16 @@ def test_a_command_is_built_alone() -> None:
         assert list(part) == (list(whole) if name == "docs" else [name])  # which tells of all
         assert [param.name for param in part[name].params] == [param.name for param in command.params]
     assert _app_with_command("nonsense") is _app_with_command("") is cli.app
+
+
+def test_a_map_beside_logs_that_were_judged_without_one_is_named(tmp_path: Path, ran: Ran) -> None:
+    log = str(shutil.copy(OVERTAKE / "safe.csv", tmp_path))
+    road, mapping = shutil.copy(OVERTAKE / "road.xodr", tmp_path), ["--mapping", str(OVERTAKE / "mapping.toml")]
+    judge = ["check", log, *mapping, "--rules", "ukhc.no-collision", NO_COPIES, "--no-cache"]
+    advice = f"drivelint: a map lies beside the logs: judge them on it with --map {road}"
+    assert advice in ran(*judge)[2].splitlines()
+    assert "a map lies" not in ran(*judge, "--map", str(road))[2] + ran(*judge, "--quiet")[2]
+    (tmp_path / "town.net.xml").write_text("<net/>", encoding="utf-8")
+    assert f"{advice} (1 other map there)" in ran(*judge)[2].splitlines()
+    (tmp_path / "alone").mkdir()
+    assert "a map lies" not in ran("check", str(shutil.copy(log, tmp_path / "alone")), *judge[2:])[2]

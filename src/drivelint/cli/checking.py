@@ -22,11 +22,11 @@ from drivelint.errors import UsageError
 from drivelint.options.arguments import CheckCommandArguments, DriveArguments
 from drivelint.options.declaration import engine_values, options_of_engine
 from drivelint.options.types import Format, to_path
-from drivelint.phrases import terminal_safe_json, terminal_safe_line
+from drivelint.phrases import plural, terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from drivelint.engine.interruption import Interruption
@@ -124,6 +124,7 @@ def check(arguments: CheckCommandArguments) -> None:
         if arguments.memory is not None and arguments.jobs == 1:
             _note_peak_memory(progress)
     typer.echo(stdout, nl=False)
+    _name_map_beside_logs(settings.traces if not arguments.quiet else (), result)
     if result.interrupted:
         say_kept_drives(result.drives["status"].to_pylist(), out)
     elif pack is not None:
@@ -137,6 +138,17 @@ def _note_peak_memory(progress: Progress) -> None:
 
     if (most := peak_bytes()) is not None:
         progress.note(f"the process took at most {format_bytes(most)} of memory, including memory outside the database")
+
+
+def _name_map_beside_logs(traces: Sequence[str], result: Result) -> None:
+    """Print the map that lies in the folders of logs if all of them were judged without a map."""
+    from drivelint.formats.files import maps_beside_traces
+
+    if result.drives["map_name"].drop_null():
+        return
+    if maps := [terminal_safe_line(str(path)) for path in maps_beside_traces(traces)]:
+        others = f" ({plural(len(maps) - 1, 'other map')} there)" if len(maps) > 1 else ""
+        streams.print_on_stderr(f"drivelint: a map lies beside the logs: judge them on it with --map {maps[0]}{others}")
 
 
 def _find_and_print_settings_file(*, quiet: bool) -> Path | None:

@@ -56,6 +56,15 @@ def expand_traces(traces: Sequence[str], *, map_path: Path | None = None) -> lis
     return [trace_by_key[key] for key in sorted(trace_by_key, key=str)]
 
 
+def maps_beside_traces(traces: Sequence[str]) -> list[Path]:
+    """Return the files in the folders of traces that are maps by their names (OpenDRIVE, Lanelet2, SUMO networks), sorted."""
+    folders = {path if path.is_dir() else path.parent for path in map(Path, traces) if _exists(path)}
+    files = {file for folder in folders if why_unreadable(folder) is None for file in folder.iterdir()}
+    return sorted(
+        file for file in files if file.suffix.lower() in MAP_SUFFIXES or file.name.lower().endswith(".net.xml")
+    )
+
+
 def _traces_of_name(text: str) -> list[Path]:
     if not text.strip():
         raise UsageError("an empty trace name was given: give a file, a glob or a folder")
