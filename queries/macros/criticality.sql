@@ -10,10 +10,11 @@ CREATE OR REPLACE MACRO along_mps(speed_mps, oncoming) AS CASE WHEN oncoming THE
 CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
     CASE WHEN closing_mps > 0 THEN gap_m / closing_mps WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
 
--- A time longer than 600 s counts as infinite, unless the rule requires more: it results from a speed difference that is too small for any
--- log to resolve.
+-- A longer time counts as infinite: it results from a speed difference that is too small for any log to resolve.
+CREATE OR REPLACE MACRO never_after_s() AS 600.0;
+-- A time, or infinite if it is too long, unless the rule requires more.
 CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
-    CASE WHEN time_s > greatest(600.0, required_s) THEN 'inf'::DOUBLE ELSE time_s END;
+    CASE WHEN time_s > greatest(never_after_s(), required_s) THEN 'inf'::DOUBLE ELSE time_s END;
 
 -- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL.
 -- `sure_at_least`: the value must be at least the required one. `sure_at_most`: the value must be at most the required one.
@@ -98,7 +99,7 @@ CREATE OR REPLACE MACRO may_ride_on_line(actor_class, d_m, lat_half_m, lead_d_m,
 -- Whether the lead will still be ahead when the ego arrives, at the present lateral speeds (positive to the left, from the heading relative
 -- to the corridor). It will not if one of the two pulls out or comes in beside the other.
 CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d_m, lead_lat_half_m, lead_lat_mps) AS
-    gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN isinf(ttc_s) THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
+    gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN ttc_s > never_after_s() THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
         < lat_half_m + lead_lat_half_m;
 
 -- The time in which a point at p, moving at v, is within r of the origin. If it never is, from_s is later than to_s.

@@ -51,7 +51,7 @@ LEFT JOIN vehicle_ahead v ON v.drive_id = s.drive_id AND v.ego_id = s.ego_id AND
 LEFT JOIN pair p ON p.drive_id = v.drive_id AND p.ego_id = v.ego_id AND p.t_ns = v.t_ns AND p.object_id = v.object_id
 LEFT JOIN ego_state e ON e.drive_id = s.drive_id AND e.ego_id = s.ego_id AND e.t_ns = s.t_ns
 LEFT JOIN ego_motion m ON m.drive_id = s.drive_id AND m.ego_id = s.ego_id AND m.t_ns = s.t_ns
-CROSS JOIN LATERAL (SELECT along_mps(v.speed_mps, v.oncoming) AS away_mps, along_mps(v.accel_mps2, v.oncoming) AS other_mps2, ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)) AS ttc_s) motion
+CROSS JOIN LATERAL (SELECT along_mps(v.speed_mps, v.oncoming) AS away_mps, along_mps(v.accel_mps2, v.oncoming) AS other_mps2, or_never(ttc_s(v.gap_m, v.ego_speed_mps - along_mps(v.speed_mps, v.oncoming)), $least_s) AS ttc_s) motion
 
 -- @condition
 -- At the ends of the log the windows of the accelerations are not whole, which says nothing about the drive. The accelerations are
