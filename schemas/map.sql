@@ -32,7 +32,7 @@ CREATE TABLE lanelet (
     bidirectional BOOLEAN NOT NULL,   -- driven in both directions; its points run as those of a lane on the right of the reference line
     along_road INTEGER NOT NULL,      -- 1: the direction of travel is that of the road's reference line; -1: the opposite
     junction_id VARCHAR,              -- the junction in which this is a connecting lane; NULL: none
-    road_type VARCHAR,                -- [road_type] NULL: the map does not state it
+    road_type VARCHAR,                -- [road_type] NULL: the map does not state it, or states several along the lanelet (road_type_varies in map_quality)
     length_m DOUBLE NOT NULL,         -- length along the centre line
     width_m DOUBLE NOT NULL,          -- mean width
     area_m2 DOUBLE NOT NULL,          -- area between the bounds
@@ -100,7 +100,7 @@ CREATE TABLE traffic_signal (
     country VARCHAR,                  -- country of the code list of type and subtype, lower case
     type VARCHAR,                     -- code of the signal's type
     subtype VARCHAR,                  -- code of the signal's subtype
-    value DOUBLE,                     -- the number on the sign, in the map's own unit
+    value DOUBLE,                     -- the number on the sign, in the map's own unit; NULL: none, or it holds only at times or for some, as another sign or the map states
     unit VARCHAR,                     -- unit of value
     dynamic BOOLEAN NOT NULL,         -- its state changes, as that of a light
     turns VARCHAR[],                  -- [turn] of a traffic light: the turns that it controls: those of its arrow, or all four for a full light; NULL: the map does not state it

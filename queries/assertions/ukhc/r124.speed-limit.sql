@@ -33,11 +33,11 @@
 
 -- @condition
 -- If the class, nation or kind of road is not known, the limit lies between two values: a speed between them is neither a pass nor a fail.
--- A speed within the limit is a pass only if the ego cannot have been over the limit before the next step.
+-- A limit that cannot be read may be higher than that of built-up areas. A speed within the limit is a pass only if the ego cannot have been over the limit before the next step.
 WITH limit_range AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps, e.lanelet_id, e.limit_mps, e.limit_source,
         peak_between_mps(e.speed_mps, lead(e.speed_mps) OVER stretch, (lead(e.t_ns) OVER stretch - e.t_ns) / 1e9) AS peak_mps,
-        least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL)) + $tolerance_mps AS most_mps,
+        least(e.limit_mps, most_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway, c.area, e.limit_mps IS NOT NULL OR coalesce(e.limit_source = 'unread', false))) + $tolerance_mps AS most_mps,
         -- A sign that the map does not have may set any limit: without a limit in the map, no speed is a pass.
         CASE WHEN e.limit_mps IS NOT NULL
             THEN least(e.limit_mps, least_limit_mps(c.vehicle_class, e.length_m, c.nation, c.road_type, c.carriageway)) + $tolerance_mps END AS least_mps

@@ -10,7 +10,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- tags = ["excuses"]
--- reads = ["chain", "clock", "data_log", "ego_condition", "ego_lane", "ego_motion", "ego_state", "excursion", "hidden", "lane_beside", "lane_occupancy", "lanelet", "line_step", "overtake_step", "pair", "step"]
+-- reads = ["chain", "clock", "data_log", "ego_condition", "ego_lane", "ego_motion", "ego_state", "excursion", "hidden", "lane_beside", "lane_occupancy", "lanelet", "line_step", "map_quality", "overtake_step", "pair", "step"]
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [params.reverse_mps]
@@ -73,6 +73,10 @@
 -- [reasons.on_restricted_lane]
 -- says = "the ego drives on restricted ground, whose direction is not known"
 -- advice = "use another lane type than restricted in the map, if vehicles may drive there"
+--
+-- [reasons.direction_varies]
+-- says = "the map states that the direction of lane {lanelet_id} may change: it is not known which one held"
+-- advice = "provide a map with the direction that held in this drive"
 --
 -- [reasons.with_lane]
 -- says = "{along_mps:.1f} m/s along the ego's heading, which is the direction of lane {lanelet_id}"
@@ -221,8 +225,9 @@ LEFT JOIN closed_lane c USING (drive_id, ego_id, t_ns)
 LEFT JOIN wrong_way_distance d USING (drive_id, ego_id, t_ns)
 
 -- @condition
-SELECT e.drive_id, e.ego_id, e.t_ns, (n.bidirectional OR coalesce(e.with_direction, a.aside_with_direction)) AND m.v_long_mps >= -$reverse_mps AS holds,
-    CASE WHEN m.v_long_mps IS NOT NULL AND coalesce(e.lanelet_id, a.aside_id) IS NOT NULL THEN why(
+SELECT e.drive_id, e.ego_id, e.t_ns, CASE WHEN q.check_id IS NULL THEN n.bidirectional OR coalesce(e.with_direction, a.aside_with_direction) END AND m.v_long_mps >= -$reverse_mps AS holds,
+    CASE WHEN q.check_id IS NOT NULL THEN why('direction_varies', {'lanelet_id': q.lanelet_id})
+        WHEN m.v_long_mps IS NOT NULL AND coalesce(e.lanelet_id, a.aside_id) IS NOT NULL THEN why(
         CASE WHEN n.bidirectional OR coalesce(e.with_direction, a.aside_with_direction) THEN 'with_lane' ELSE 'against_lane' END,
         {'along_mps': m.v_long_mps, 'lanelet_id': coalesce(e.lanelet_id, a.aside_id)}
     ) END AS reason
@@ -231,3 +236,4 @@ JOIN data_log g USING (drive_id)
 LEFT JOIN ego_motion m USING (drive_id, ego_id, t_ns)
 LEFT JOIN ego_lane a USING (drive_id, ego_id, t_ns)
 LEFT JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = coalesce(e.lanelet_id, a.aside_id)
+LEFT JOIN map_quality q ON q.environment_id = g.environment_id AND q.lanelet_id = coalesce(e.lanelet_id, a.aside_id) AND q.check_id = 'lane_direction_varies'

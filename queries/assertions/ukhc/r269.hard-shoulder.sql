@@ -10,7 +10,7 @@
 -- sense = "holds"
 -- merge_gap_s = 5.0
 -- tags = ["excuses", "standing"]
--- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet"]
+-- reads = ["data_log", "ego_condition", "ego_mode", "ego_state", "lane_occupancy", "lanelet", "map_quality"]
 -- requires = ["map", "registration"]
 --
 -- [params.warns_s]
@@ -34,15 +34,20 @@
 --
 -- [reasons.stop_unseen]
 -- says = "the log does not show whether the ego stops with its hazard lights on"
+--
+-- [reasons.may_be_open]
+-- says = "the map states that the shoulder may be opened to traffic: it is not known whether it was"
+-- advice = "provide a map that has the shoulder as a driving lane, if it was open"
 
 -- @condition
 -- An emergency is a declared mode, or hazard lights on an ego that stops.
 WITH occupied_lane AS (
-    SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS is_shoulder, min(n.road_type) AS road_type
+    SELECT e.drive_id, e.ego_id, e.t_ns, bool_and(n.lane_type IN ('shoulder', 'stop')) AS is_shoulder, bool_or(q.check_id IS NOT NULL) AS may_be_open, min(n.road_type) AS road_type
     FROM ego_state e
     JOIN lane_occupancy o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id AND o.t_ns = e.t_ns
     JOIN data_log g ON g.drive_id = e.drive_id
     JOIN lanelet n ON n.environment_id = g.environment_id AND n.lanelet_id = o.lanelet_id
+    LEFT JOIN map_quality q ON q.environment_id = n.environment_id AND q.lanelet_id = n.lanelet_id AND q.check_id = 'lane_type_varies'
     GROUP BY ALL
 ),
 emergency_step AS (
@@ -80,11 +85,12 @@ excuse AS (
         soon AS (PARTITION BY drive_id, ego_id, n ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND ($warns_s * 1e9)::BIGINT FOLLOWING)
 )
 -- Where the map has no lane under the ego, there may be a shoulder. The kind of road matters only on a shoulder.
-SELECT e.drive_id, e.ego_id, e.t_ns, NOT l.is_shoulder AS holds,
+SELECT e.drive_id, e.ego_id, e.t_ns, CASE WHEN NOT (l.is_shoulder AND l.may_be_open) THEN NOT l.is_shoulder END AS holds,
     CASE WHEN m.is_declared OR x.excuse OR m.t_ns IS NOT NULL AND l.is_shoulder IS DISTINCT FROM true THEN false
         WHEN NOT l.is_shoulder OR e.x_m IS NOT NULL AND l.is_shoulder IS NULL THEN coalesce(c.road_type, l.road_type, '') = 'motorway'
         ELSE coalesce(c.road_type, l.road_type) = 'motorway' AND NOT x.excuse END AS applies,
-    CASE WHEN l.is_shoulder AND x.excuse IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN why('drove_with_hazard_lights') ELSE why('stop_unseen') END END AS reason
+    CASE WHEN l.is_shoulder AND x.excuse IS NULL THEN CASE WHEN m.t_ns IS NOT NULL THEN why('drove_with_hazard_lights') ELSE why('stop_unseen') END
+        WHEN l.is_shoulder AND l.may_be_open THEN why('may_be_open') END AS reason
 FROM ego_state e
 LEFT JOIN occupied_lane l USING (drive_id, ego_id, t_ns)
 LEFT JOIN emergency_step m USING (drive_id, ego_id, t_ns)

@@ -29,6 +29,11 @@ def signal_kind(country: str, code: str, name: str) -> str | None:
     return next((kind for pattern, kind in _KINDS_BY_NAME_PATTERN if pattern.search(lowered)), None)
 
 
+def has_codes_of(country: str) -> bool:
+    """Return whether the codes of a country (as maps write it, any case) are known."""
+    return country.lower() in _NAMES_AND_ARROWS["countries"]
+
+
 def signal_codes_by_list(kind: str) -> dict[str, list[str]]:
     """Return name of a list (OpenDRIVE, de, gb, us, es) -> its codes for this kind of signal; lists without such a code are left out."""
     return dict(toml_beside(__file__, "signcodes.toml").get(kind, {}))

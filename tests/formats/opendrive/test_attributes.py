@@ -54,7 +54,43 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
     ]  # fmt: skip
     # the other lane is driven against the stations
     assert limits(environment, "1.0.1") == [(10, 40, None, "road_type"), (40, 100, 13.888889, "road_type")]
-    assert lanelets(environment)["1.0.1"]["road_type"] == "town"
+
+
+@pytest.mark.parametrize(
+    ("types", "road_type", "varies"),
+    [
+        ("town", "town", False),
+        ("town town", "town", False),
+        ("town motorway", None, True),
+        ("unknown motorway", None, True),
+        ("unknown", None, False),
+    ],
+)
+def test_a_road_whose_type_changes_along_a_lane_has_none(types: str, road_type: str | None, varies: bool) -> None:
+    more = "".join(f'<type s="{90 * k}" type="{kind}"/>' for k, kind in enumerate(types.split()))
+    environment = load(road(lanes=section(0, lane(-1)), more=more))
+    assert lanelets(environment)["1.0.-1"]["road_type"] == road_type
+    assert checks(environment).get("road_type_varies", []) == ["1.0.-1"] * varies
+
+
+def test_a_road_type_that_ends_within_a_metre_of_a_lane_does_not_count() -> None:
+    environment = load(road(lanes=section(0, lane(-1)), more='<type s="0" type="town"/><type s="0.9" type="rural"/>'))
+    assert lanelets(environment)["1.0.-1"]["road_type"] == "rural"
+    assert "road_type_varies" not in checks(environment)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "check"),
+    [
+        ('dynamicLaneType="true"', "lane_type_varies"),
+        ('dynamicLaneDirection="1"', "lane_direction_varies"),
+        ('dynamicLaneType="false" dynamicLaneDirection="0"', None),
+    ],
+)
+def test_a_lane_whose_type_or_direction_may_change_is_named(attributes: str, check: str | None) -> None:
+    environment = load(road(lanes=section(0, lane(-1), lane(-2, kind="stop", attributes=attributes))))
+    assert checks(environment).get(check or "", []) == ["1.0.-2"] * bool(check)
+    assert {"lane_type_varies", "lane_direction_varies"} & set(checks(environment)) == {check} - {None}
 
 
 @pytest.mark.parametrize(
@@ -220,6 +256,39 @@ def test_kinds_by_code_then_by_name(country: str, code: str, name: str, kind: st
     assert signal_kind(country, code, name) == kind
 
 
+@pytest.mark.parametrize(
+    ("meaning", "kind"),
+    [
+        ('<priority type="stop"/>', "stop"),
+        ('<warning/><priority type="yield"/>', "give_way"),
+        ('<lane type="noOvertakeCars"/>', "no_overtaking"),
+        ('<priority type="4way"/>', None),
+    ],
+)
+def test_a_sign_of_a_country_without_known_codes_is_recognised_by_its_semantics(meaning: str, kind: str | None) -> None:
+    environment = with_signals(signal(30, country="fr", type="AB4", inside=f"<semantics>{meaning}</semantics>"))
+    assert set(values(environment, "traffic_signal", "kind")) == {kind}
+    assert "signs_unmapped" not in checks(environment)
+
+
+@pytest.mark.parametrize(
+    ("country", "attributes", "unmapped"),
+    [
+        ("fr", {"type": "AB4"}, True),
+        ("fr", {"type": "AB4", "name": "Stop"}, False),
+        ("fr", {"type": "AB4", "dynamic": "yes"}, False),
+        ("fr", {"type": "-1"}, False),
+        ("de", {"type": "1042"}, False),
+    ],
+)
+def test_among_signs_of_unknown_codes_there_may_be_one_that_governs_a_junction(
+    country: str, attributes: dict[str, str], unmapped: bool
+) -> None:
+    environment = with_signals(signal(30, country=country, **attributes))
+    assert ("signs_unmapped" in checks(environment)) == unmapped
+    assert values(environment, "environment", "signs_mapped") == [not unmapped]
+
+
 def object_(kind: str, s: float, t: float, inside: str = "", **attributes: str) -> str:
     text = " ".join(f'{k}="{v}"' for k, v in attributes.items())
     return f'<object id="{attributes.get("name", "o")}" s="{s}" t="{t}" type="{kind}" {text}>{inside}</object>'
@@ -294,6 +363,27 @@ def test_crossings_lie_across_drivable_lanes_only() -> None:
     row = rows(environment, "road_object")[0]
     assert (row["kind"], row["x_m"]) == ("crossing", 27.0)
     assert sorted(row["outline_x_m"]) == [25.0, 25.0, 29.0, 29.0]
+
+
+@pytest.mark.parametrize(
+    ("height", "z_offset", "crosses"),
+    [("8", "0", False), ("-8", "0", False), ("2.9", "0", True), ("8", "8", True), (None, "0", True)],
+)
+def test_crossings_and_stop_lines_are_not_on_a_bridge_over_them(
+    height: str | None, z_offset: str, crosses: bool
+) -> None:
+    """Road 2 crosses road 1, with the objects, at this height; None: the height is not stated."""
+    flat = '<elevationProfile><elevation s="0" a="{}"/></elevationProfile>'
+    crossing = object_("crosswalk", 50, 0, name="X", length="9", width="9", zOffset=z_offset)
+    line = object_("stopLine", 50, 0, name="L", length="9", width="0.3", zOffset=z_offset)
+    bridge = LINE.replace('x="0" y="0" hdg="0"', 'x="50" y="-50" hdg="1.5707963267948966"')
+    environment = load(
+        road(more=f"{flat.format(0)}<objects>{crossing}{line}</objects>"),
+        road("2", bridge, more="" if height is None else flat.format(height)),
+    )
+    over = {"2.0.-1", "2.0.1"} if crosses else set()
+    assert set(values(environment, "crossing", "lanelet_id")) == {"1.0.-1", "1.0.1"} | over
+    assert set(values(environment, "stop_line", "lanelet_id")) == over
 
 
 def test_objects_repeat() -> None:

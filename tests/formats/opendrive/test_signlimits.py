@@ -94,6 +94,61 @@ def test_a_sign_goes_before_the_default_of_the_road_type(value: str, unit: str, 
     assert {row[3:] for row in limits(environment) if row[0].endswith(".1")} == {(96.561, "road_type")}
 
 
+SWEDISH = {"country": "SE", "type": "C31", "subtype": "3"}
+SPEED = '<semantics><speed type="{}" value="30" unit="km/h"/>{}</semantics>'
+DEFAULT, READ, UNREAD = (96.561, "road_type"), (30.0, "sign"), (None, "unread")
+
+
+@pytest.mark.parametrize(
+    ("inside", "attributes", "limit"),
+    [
+        (SPEED.format("maximum", ""), {}, READ),
+        (SPEED.format("zone", ""), {}, READ),
+        ('<semantics><speed type="maximum"/></semantics>', {"value": "30", "unit": "km/h"}, READ),
+        (SPEED.format("recommended", ""), {"value": "30", "unit": "km/h"}, DEFAULT),
+        (SPEED.format("minimum", ""), {}, DEFAULT),
+        ("", {}, DEFAULT),
+        # A speed on a sign whose code is not known may be a limit.
+        ("", {"value": "30", "unit": "km/h"}, UNREAD),
+        ("", {"value": "30", "unit": "t"}, DEFAULT),
+        # Limits for some hours, some weather or some vehicles.
+        (SPEED.format("maximum", '<supplementaryTime type="time" value="7"/>'), {}, UNREAD),
+        (SPEED.format("maximum", '<supplementaryEnvironment type="rain"/>'), {}, UNREAD),
+        (SPEED.format("maximum", '<supplementaryDistance type="for" value="500" unit="m"/>'), {}, READ),
+    ],
+)
+def test_what_a_sign_means_is_read_or_its_limit_is_unknown(
+    inside: str, attributes: dict[str, str], limit: tuple[float | None, str]
+) -> None:
+    environment = one_road(signal(30, inside=inside, **SWEDISH, **attributes))
+    assert [row[3:] for row in limits(environment) if row[0].endswith("-1")][1:] == [limit] * (
+        1 if limit == DEFAULT else 2
+    )
+
+
+def test_an_unread_speed_ends_the_limit_before_it() -> None:
+    environment = one_road(signal(10, **FIFTY), signal(30, **SWEDISH, id="8", value="30", unit="km/h"))
+    assert [row[1:] for row in limits(environment) if row[0] == "1.0.-1"] == [
+        (0.0, 10.0, *DEFAULT), (10.0, 30.0, 50.0, "sign"), (30.0, 50.0, *UNREAD),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("plate", "inside", "limit"),
+    [
+        ({"type": "1042", "id": "8"}, '<dependency id="8"/>', UNREAD),
+        ({"type": "1042", "id": "8", "inside": '<dependency id="7"/>'}, "", UNREAD),
+        ({"type": "1000001", "id": "8", "dynamic": "yes"}, '<dependency id="8"/>', (50.0, "sign")),
+        ({"type": "1042", "id": "8"}, "", (50.0, "sign")),
+    ],
+)
+def test_a_limit_with_a_plate_that_is_not_read_is_unknown(
+    plate: dict[str, str], inside: str, limit: tuple[float | None, str]
+) -> None:
+    environment = one_road(signal(30, inside=inside, **FIFTY), signal(30, **plate))
+    assert [row[3:] for row in limits(environment) if row[0] == "1.1.-1"] == [limit]
+
+
 def test_behind_the_end_of_a_limit_the_default_holds_again() -> None:
     environment = one_road(signal(30, **FIFTY), signal(40, type="278"))
     assert [row[1:] for row in limits(environment) if row[0] == "1.0.-1"] == [

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width belongs to another lane
 MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line at a smaller angle to the lane is no stop line
 MIN_CROSSING_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
+OTHER_LEVEL_HEIGHT_DIFFERENCE_M = (
+    3.0  # a lane of another road at least this far above or below an object is over or under it
+)
 MAX_REPEATS = 10_000  # of one object
 _BAND_SPACING_M = 5.0
 _BAND_WIDTH_M = 0.05  # of a fence or railing that has no width of its own
@@ -119,6 +122,8 @@ def _stop_lines_and_crossings(
             points = shapely.get_coordinates(common)
             centre = shapely.LineString(lanes[i].line.centre)
             s = np.atleast_1d(shapely.line_locate_point(centre, shapely.points(points)))
+            if _is_on_other_level(flat_object, lanes[i], float(np.mean(s))):
+                continue
             if flat_object.kind == "crossing" and float(shapely.area(common)) >= MIN_CROSSING_AREA_M2:
                 rows.append(crossing_row(flat_object.object_id, lanes[i].lanelet_id, s, _crossing_kind(flat_object)))
             if flat_object.kind == "stop_line" and _lies_across(lanes[i], corners, points, float(np.mean(s))):
@@ -129,6 +134,16 @@ def _stop_lines_and_crossings(
             quality.add("object_without_lane", "info", flat_object.road.road_id, message)
         rows_by_kind[flat_object.kind] += rows
     return rows_by_kind["stop_line"], rows_by_kind["crossing"]
+
+
+def _is_on_other_level(flat_object: PlacedObject, lane: Lanelet, station_m: float) -> bool:
+    """Return whether an object is over or under a lane of another road, as below a bridge. An unknown height shows nothing."""
+    heights = flat_object.road.elevation
+    if lane.road is flat_object.road or not len(heights.start):
+        return False
+    at = np.array([flat_object.s])
+    z = float(heights.evaluate(at, at)[0][0]) + number_attribute(flat_object.element, "zOffset", 0.0)
+    return abs(float(np.interp(station_m, lane.line.s, lane.z)) - z) >= OTHER_LEVEL_HEIGHT_DIFFERENCE_M
 
 
 def _valid_polygon(corners: Floats) -> shapely.Geometry:

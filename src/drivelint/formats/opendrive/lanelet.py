@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 LaneKey = tuple[str, int, int]  # road, section, lane number
+_LEAST_TYPE_M = 1.0  # a shorter stretch of another road type at the end of a lanelet does not count
 
 
 def lanelet_id(key: LaneKey) -> str:
@@ -77,14 +78,23 @@ class Lanelet:
 
 
 def road_type(lanelet: Lanelet) -> str | None:
-    """Return the road type of most of the lanelet's length; None if the map does not state it."""
-    road = lanelet.road
-    held: dict[str | None, float] = {}
-    for i, a, b in _record_spans((s for s, _ in road.types), lanelet.lane_section.start_m, lanelet.lane_section.end_m):
-        kind = road.types[i][1] if i >= 0 else None
-        held[kind] = held.get(kind, 0.0) + b - a
-    best = max(held.items(), key=lambda item: (item[1], item[0] or ""), default=(None, 0.0))[0]
-    return None if best == "unknown" else best
+    """Return the road type of a lanelet; None if the map does not state it, or states another one for a part of the lanelet."""
+    types = _road_types(lanelet)
+    return types[0] if len(types) == 1 and types[0] != "unknown" else None
+
+
+def has_several_road_types(lanelet: Lanelet) -> bool:
+    """Return whether the map states different road types along a lanelet."""
+    return len(_road_types(lanelet)) > 1
+
+
+def _road_types(lanelet: Lanelet) -> list[str | None]:
+    road, section = lanelet.road, lanelet.lane_section
+    spans = _record_spans((s for s, _ in road.types), section.start_m, section.end_m)
+    types = [(road.types[i][1] if i >= 0 else None, b - a) for i, a, b in spans]
+    longest = max((length for _, length in types), default=0.0)
+    # A type that ends just after the lanelet begins is a matter of rounding; a lanelet may itself be that short.
+    return list(dict.fromkeys(kind for kind, length in types if length > min(_LEAST_TYPE_M, 0.5 * longest)))
 
 
 def recorded_limit_rows(lanelet: Lanelet) -> Rows:

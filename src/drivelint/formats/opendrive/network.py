@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 MAX_ROAD_LENGTH_M = 1e6  # a longer road is a unit mistake, and would be millions of points
 START, END = "start", "end"
+DYNAMIC_TYPE, DYNAMIC_DIRECTION = "dynamicLaneType", "dynamicLaneDirection"
 
 # Types of lanes on which motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). Not
 # among them: the hard shoulder ("stop"), parking, biking, tram and everything beside the carriageway.
@@ -70,6 +71,7 @@ class Lane:
     travel: str | None = None  # RoadRunner's userData: forward, backward, undirected
     direction: str | None = None  # OpenDRIVE 1.8: standard, reversed, both
     is_access_unread: bool = False  # see `lane_type_and_unread`
+    varies: tuple[str, ...] = ()  # the attributes by which OpenDRIVE 1.8 states that type or direction may change
     invalid: str | None = None
 
 
@@ -308,6 +310,7 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
         travel=None if user is None else user.get("travelDir"),
         direction=element.get("direction"),
         is_access_unread=is_access_unread,
+        varies=tuple(name for name in (DYNAMIC_TYPE, DYNAMIC_DIRECTION) if element.get(name) in {"true", "1"}),
     )
 
 

@@ -9,10 +9,10 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture_rows
-from drivelint.formats.opendrive.lanelet import boundary_rows, recorded_limit_rows, road_type
+from drivelint.formats.opendrive.lanelet import boundary_rows, has_several_road_types, recorded_limit_rows, road_type
 from drivelint.formats.opendrive.lanes import build_lanelets
 from drivelint.formats.opendrive.links import lanelet_links
-from drivelint.formats.opendrive.network import road_network
+from drivelint.formats.opendrive.network import DYNAMIC_DIRECTION, DYNAMIC_TYPE, road_network
 from drivelint.formats.opendrive.signlimits import speed_limit_rows
 from drivelint.road.boundary_lanes import lane_point_columns
 from drivelint.road.driving_side import opposite_side, side_driven_on
@@ -41,10 +41,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     turned = direction.forward != (direction.handedness == "rht")
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
-    for lane in built:
-        if lane.drivable and lane.lane.is_access_unread:
-            message = "its <access> keeps cars out at a place or in a way that is not read: who may use it is not known"
-            quality.add("access_unread", "warning", lane.lanelet_id, message)
+    _report_unread_statements(built, quality)
     recorded = [row for lane in built for row in recorded_limit_rows(lane)]
     beside = furniture_rows(net, built, request.offset, quality)
     limits = speed_limit_rows(built, lane_links, beside["traffic_signal"], recorded, quality)
@@ -70,6 +67,23 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         nation=net.nation,
     )
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
+
+
+def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None:
+    """Report the lanes of which the map states something that no column can have. The rules that need it are unknown there."""
+    for lane in lanes:
+        if lane.drivable and lane.lane.is_access_unread:
+            message = "its <access> keeps cars out at a place or in a way that is not read: who may use it is not known"
+            quality.add("access_unread", "warning", lane.lanelet_id, message)
+        if DYNAMIC_TYPE in lane.lane.varies:
+            message = "its type may change (dynamicLaneType): whether it is open to traffic is not known"
+            quality.add("lane_type_varies", "warning", lane.lanelet_id, message)
+        if DYNAMIC_DIRECTION in lane.lane.varies:
+            message = "its direction may change (dynamicLaneDirection): which one holds is not known"
+            quality.add("lane_direction_varies", "warning", lane.lanelet_id, message)
+        if lane.drivable and has_several_road_types(lane):
+            message = "the type of its road changes along it: the kind of road is treated as not stated"
+            quality.add("road_type_varies", "warning", lane.lanelet_id, message)
 
 
 def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality) -> tuple[DrivingDirection, BuiltLanes]:

@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drivelint.formats.opendrive.semantics import element_with_value, kind_by_semantics, restricted_sign_ids
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute
-from drivelint.road.signcodes import signal_kind, turns_of_light_code
+from drivelint.phrases import escape_invisible, name_list
+from drivelint.road.quality import SIGNS_UNMAPPED_CHECK
+from drivelint.road.signcodes import has_codes_of, signal_kind, turns_of_light_code
 from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
@@ -56,6 +59,8 @@ class _SignalReader:
             for road in net.roads.values()
             for signal in road.element.iterfind("signals/signal")
         }
+        kind_by_id = {name: _kind(signal) for name, (_, signal) in self.defined.items()}
+        self.restricted_ids = restricted_sign_ids((signal for _, signal in self.defined.values()), kind_by_id)
         self.signals: Rows = []
         self.stop_lines: Rows = []
         self.contradictions: list[str] = []
@@ -80,16 +85,18 @@ class _SignalReader:
             self.quality.add("signal_off_road", "warning", road.road_id, message)
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _contains_station(lane, s)]
         x, y = _position(home, signal, self.offset)
-        kind = signal_kind(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
+        kind = _kind(signal)
         turns = (
             turns_of_light_code(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
         )
-        value = 0.0 if signal.get("value") in {None, "", "None"} else number_attribute(signal, "value")
+        source = element_with_value(signal)
+        said = None if source is None or signal.get("id") in self.restricted_ids else source.get("value")
+        value = 0.0 if source is None or said in {None, "", "None"} else number_attribute(source, "value")
         signal_columns = {
             "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
             "type": signal.get("type"), "subtype": signal.get("subtype"),
             "value": value if value > 0.0 else None,  # writers use -1 or 0 for no value
-            "unit": signal.get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
+            "unit": (signal if source is None else source).get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
             "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
         }  # fmt: skip
         self.signals += [
@@ -154,11 +161,31 @@ class _SignalReader:
         if self.contradictions:
             message = f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): the lanes are used"
             self.quality.add("signal_orientation", "warning", None, message, len(self.contradictions))
+        self._report_signs_of_unknown_codes()
         placed = {row["signal_id"] for row in self.signals}
         for name, (road, _) in self.defined.items():
             if name not in placed:
                 message = f"signal {name} of road {road.road_id} applies to no lane that vehicles drive on"
                 self.quality.add("signal_without_lane", "info", road.road_id, message)
+
+    def _report_signs_of_unknown_codes(self) -> None:
+        """Report signs of countries whose codes are not known: any of them may be a stop or give-way sign."""
+        codes = sorted({
+            f"{signal.get('country', '')} {signal.get('type', '')}"
+            for _, signal in self.defined.values()
+            if _kind(signal) is None and signal.find("semantics") is None and signal.get("dynamic") != "yes"
+            and signal.get("type") not in {None, "", "-1", "none"} and not has_codes_of(signal.get("country", ""))
+        })  # fmt: skip
+        if codes:
+            named = name_list([escape_invisible(code[:40]) for code in codes])
+            message = f"signs with codes that are not known ({named}): whether a junction without another sign has one is not known"
+            self.quality.add(SIGNS_UNMAPPED_CHECK, "info", None, message, len(codes))
+
+
+def _kind(signal: etree._Element) -> str | None:
+    """Return the kind of a signal: by its semantics, else by its code, else by its name."""
+    by_code = signal_kind(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
+    return kind_by_semantics(signal) or by_code
 
 
 def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -> tuple[float, float]:

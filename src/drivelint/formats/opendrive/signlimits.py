@@ -5,7 +5,8 @@ over both. A sign applies from its position, along its lane, to the next sign or
 record no limit, or the same limit as the road of the sign; a different record is a new default. Beyond a junction, the sign's limit is not
 used: nations differ in whether it continues there.
 
-A sign that cannot be read (without number or unit, or with a changing number) makes the default of the road type unknown. A limit that
+A sign that cannot be read (without number or unit, with a changing number, with a speed but an unknown code, or for some vehicles or hours
+only) makes the default of the road type unknown. A limit that
 the lane itself records still applies: it may be that of the sign.
 """
 
@@ -81,12 +82,12 @@ def _sign_limit_rows(
         after.setdefault(a.lanelet_id, []).append(b.lanelet_id)
     posts: dict[str, list[float]] = {}
     for row in signals:
-        if row["kind"] in LIMIT_END_KINDS:
+        if row["kind"] in LIMIT_END_KINDS or _may_be_limit(row):
             posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
     todo = [
         _SignStretch(row["lanelet_id"], row["lane_s_m"], _sign_limit_mps(row))
         for row in signals
-        if row["kind"] in LIMIT_BEGIN_KINDS
+        if row["kind"] in LIMIT_BEGIN_KINDS or _may_be_limit(row)
     ]
     seen: set[_SignStretch] = set()
     while todo:
@@ -143,7 +144,13 @@ def _is_contradiction(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
     return common > _MIN_SPAN_M and not same
 
 
+def _may_be_limit(row: Mapping[str, Any]) -> bool:
+    """Return whether a sign that was not recognised has a speed, and so may be a limit."""
+    return row["kind"] is None and row["value"] is not None and row["unit"] in SPEED_UNITS_MPS
+
+
 def _sign_limit_mps(row: Mapping[str, Any]) -> float | None:
-    """Return the limit on a sign (m/s); None: it has no number or no unit, or it changes."""
+    """Return the limit on a sign (m/s); None: it has no number or no unit, it changes, or its code is not known."""
     unit = SPEED_UNITS_MPS.get(row["unit"] or "")
-    return None if unit is None or row["value"] is None or row["dynamic"] else float(row["value"]) * unit
+    is_unread = unit is None or row["value"] is None or row["dynamic"] or row["kind"] is None
+    return None if is_unread or unit is None else float(row["value"]) * unit
