@@ -115,7 +115,10 @@ def test_lanes_of_a_ban_on_overtaking_with_a_plate_are_named() -> None:
     for name, kind in ((51, 56), (52, 17)):
         plate = road.sign(name, (60.0, -5.5, 2.0), kind, logical=[1]).supplementary_sign.add()
         plate.classification.type = 5
-    road.sign(53, (60.0, 5.5, 2.0), 56, logical=[2])
+    opposite = road.sign(53, (60.0, 5.5, 2.0), 56, logical=[2])
+    opposite.supplementary_sign.add().classification.type = 2
+    off = opposite.supplementary_sign.add().classification
+    off.type, off.is_out_of_service = 5, True
     environment = road.load()
     assert values(environment, "map_quality", "check_id lanelet_id message") == [
         (

@@ -159,10 +159,14 @@ def _rows_of_sign(sign: Any, map_lanes: _MapLanes, quality: MapQuality) -> Itera
     }  # fmt: skip
     description = f"traffic sign {sign.id.value}"
     lanes = map_lanes.assigned_lanes(classification, base)
-    if sign.supplementary_sign and row["kind"] in KINDS_WITH_UNREAD_CONDITIONS:
-        plates = ", ".join(f"type {plate.classification.type}" for plate in sign.supplementary_sign)
+    plates = [
+        f"type {plate.type}"
+        for plate in (each.classification for each in sign.supplementary_sign)
+        if plate.type != kinds.NO_PLATE_TYPE and not plate.is_out_of_service
+    ]
+    if plates and row["kind"] in KINDS_WITH_UNREAD_CONDITIONS:
         for lane in lanes:
-            add_unread_condition(quality, lane.lanelet_id, description, plates)
+            add_unread_condition(quality, lane.lanelet_id, description, ", ".join(plates))
     return _signal_rows(description, row, lanes, map_lanes.map_position(base), quality)
 
 
