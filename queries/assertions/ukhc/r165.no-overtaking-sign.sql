@@ -12,7 +12,7 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [reasons.sign_unknown]
--- says = "it is not known whether a no-overtaking sign applies here, because behind the ego the map has no such sign, no end of such a sign and no junction"
+-- says = "it is not known whether a no-overtaking sign applies here, because behind the ego the map has no such sign, no end of such a sign and no junction, or because the sign is variable or has a plate"
 -- advice = "use a map that goes back to the last junction"
 
 -- @reference

@@ -8,7 +8,7 @@ CREATE TABLE overtake_place (
     crossing_m DOUBLE,                -- distance from the ego's front at t0 to the next pedestrian crossing, as junction_m {position}
     marking_out VARCHAR,              -- [marking] of the boundary that the ego crosses at t0, seen from the running lane; NULL: the map does not state it {position}
     marking_back VARCHAR,             -- [marking] of the boundary that the ego crosses back at t3, seen from the overtaking lane; NULL: the map does not state it, or the ego never comes back {position}
-    no_overtaking BOOLEAN,            -- a no-overtaking sign applies at t0, or where the ego's front draws level with the rear of a vehicle that it passes; it applies until its end sign or the next junction; NULL: the map has no such signs, or neither a sign nor a junction behind the ego: one may stand further back {position}
+    no_overtaking BOOLEAN,            -- a no-overtaking sign applies at t0, or where the ego's front draws level with the rear of a vehicle that it passes; it applies until its end sign or the next junction; NULL: the map has no such signs, or neither a sign nor a junction behind the ego: one may stand further back; or the sign is variable or has a plate, and may not apply now {position}
     rear_id VARCHAR,                  -- a vehicle behind or beside the ego at t0, in the overtaking lane or moving into it; NULL: none {position, heading, size}
     rear_gap_m DOUBLE,                -- distance from that vehicle's front to the ego's rear; negative: alongside {position, heading, size}
     rear_ttc_s DOUBLE,                -- time until that vehicle reaches the ego's rear, at the ego's speed and the vehicle's highest speed in the 2 s before; infinite: never, or no vehicle; 0: alongside {position, velocity}
@@ -78,14 +78,17 @@ front_place AS (
     ) l
     JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id AND x.t_ns = l.t_ns
 ),
+lanelet_with_plate AS (SELECT DISTINCT environment_id, lanelet_id FROM map_quality WHERE check_id = 'sign_condition_unread'),
 -- The last sign or junction that the ego has passed. A sign applies until its end is signed, or until the next junction. If there is
 -- neither, a sign may stand further back than the corridor extends, or before the map's beginning.
 last_sign_passed AS (
     SELECT w.drive_id, w.ego_id, w.occurrence, f.is_level, max({'s_m': w.s_m, 'holds': w.holds}).holds AS holds
     FROM (
-        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m, t.kind = 'no_overtaking' AS holds
+        SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + t.lane_s_m AS s_m,
+            CASE WHEN NOT t.dynamic AND (t.kind = 'no_overtaking_end' OR q.lanelet_id IS NULL) THEN t.kind = 'no_overtaking' END AS holds
         FROM chain_lanelet w
         JOIN traffic_signal t ON t.environment_id = w.environment_id AND t.lanelet_id = w.lanelet_id
+        LEFT JOIN lanelet_with_plate q ON q.environment_id = w.environment_id AND q.lanelet_id = w.lanelet_id
         WHERE t.kind IN ('no_overtaking', 'no_overtaking_end')
         UNION ALL
         SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + w.length_m, false
@@ -153,7 +156,7 @@ hidden_vehicle AS (
 SELECT
     g.drive_id, g.ego_id, g.occurrence, coalesce(j.ahead_m, 'infinity'::DOUBLE) AS junction_m, coalesce(x.ahead_m, 'infinity'::DOUBLE) AS crossing_m,
     o.marking AS marking_out, seen_from_beyond(b.marking) AS marking_back,
-    CASE WHEN d.environment_id IS NOT NULL THEN s.holds OR CASE WHEN u.front_s_m IS NOT NULL OR NOT g.passed THEN coalesce(v.holds, false) END END AS no_overtaking,
+    CASE WHEN d.environment_id IS NOT NULL THEN s.holds OR CASE WHEN u.front_s_m IS NOT NULL OR NOT g.passed THEN CASE WHEN v.drive_id IS NULL THEN false ELSE v.holds END END END AS no_overtaking,
     r.o.object_id AS rear_id, r.o.gap_m AS rear_gap_m, CASE WHEN r.o.object_id IS NULL THEN 'infinity'::DOUBLE ELSE r.o.ttc_s END AS rear_ttc_s,
     h.t_ns IS NULL AND coalesce(r.known, true) AS rear_known, CASE WHEN coalesce(r.known, true) THEN h.least_m END AS rear_unseen_m
 FROM overtake_begin g

@@ -258,6 +258,27 @@ def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("elements", "unread"),
+    [
+        ([("276", ""), ("1040-30", "")], ["1", "2"]),
+        ([("276", ""), ("1049-13", "")], ["1", "2"]),
+        ([("276", ""), ("1012-50", "")], []),
+        ([("276", "")], []),
+        ([("206", ""), ("1040-30", "")], []),
+    ],
+)
+def test_lanes_of_a_ban_on_overtaking_with_a_plate_are_named(
+    elements: list[tuple[str, str]], unread: list[str]
+) -> None:
+    lanes = lanelet(1, 0.0, '<trafficSignRef ref="90"/>'), lanelet(2, -3.5, '<trafficSignRef ref="90"/>')
+    environment = load(scenario(*lanes, lanelet(3, -7.0), sign(90, *elements)))
+    assert values(environment, "map_quality", "lanelet_id", check_id="sign_condition_unread") == unread
+    if unread:
+        message = f"sign 90 applies only as its plates state ({elements[1][0]}): when it applies is not known"
+        assert ("sign_condition_unread", message) in said(environment)
+
+
 def test_what_is_not_read_is_named() -> None:
     environment = load(
         scenario(

@@ -52,13 +52,20 @@ class Drawing:
         )
         return self.count
 
-    def element(self, subtype: str = "traffic_sign", /, **members: list[int]) -> str:
-        """Add a regulatory element, `count` is then its id; return it as a member of a lanelet."""
+    def element(self, subtype: str = "traffic_sign", /, yields: tuple[int, ...] = (), **members: list[int]) -> str:
+        """Add a regulatory element, `count` is then its id; return it as a member of a lanelet. `yields`: lanelets with the role yield."""
         self.count += 1
-        inside = "".join(f'<member type="way" ref="{i}" role="{role}"/>' for role, ids in members.items() for i in ids)
+        inside = "".join(f'<member type="relation" ref="{i}" role="yield"/>' for i in yields)
+        inside += "".join(f'<member type="way" ref="{i}" role="{role}"/>' for role, ids in members.items() for i in ids)
         said = f'<tag k="type" v="regulatory_element"/><tag k="subtype" v="{subtype}"/>'
         self.parts.append(f'<relation id="{self.count}">{inside}{said}</relation>')
         return f'<member type="relation" ref="{self.count}" role="regulatory_element"/>'
+
+    def tag_last(self, **tags: str) -> None:
+        """Add tags to the last way, lanelet or regulatory element."""
+        said = "".join(f'<tag k="{k}" v="{v}"/>' for k, v in tags.items())
+        start, end = self.parts[-1].rsplit("</", 1)
+        self.parts[-1] = f"{start}{said}</{end}"
 
     def text(self) -> str:
         """Return the file."""

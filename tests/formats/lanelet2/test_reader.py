@@ -169,6 +169,33 @@ def test_a_stop_line_and_its_sign_hold_for_the_lanes_that_refer_to_them() -> Non
     assert values(environment, "speed_limit", "limit_mps") == [pytest.approx(15.0 / 3.6, abs=1e-6)]
 
 
+def test_at_an_all_way_stop_every_lane_has_a_stop_sign_at_its_line() -> None:
+    drawing = Drawing(local=True, globe=False)
+    lines = [
+        drawing.way([(40.0, 0.0), (40.0, -3.5)], "stop_line", ""),
+        drawing.way([(60.0, 3.5), (60.0, 0.0)], "stop_line", ""),
+    ]
+    east = drawing.way([(0.0, 0.0), (40.0, 0.0)]), drawing.way([(0.0, -3.5), (40.0, -3.5)])
+    west = drawing.way([(99.0, 0.0), (60.0, 0.0)]), drawing.way([(99.0, 3.5), (60.0, 3.5)])
+    names = drawing.count + 2, drawing.count + 3
+    element = drawing.element("all_way_stop", yields=names, ref_line=lines)
+    assert (drawing.lanelet(east[0], east[1], element), drawing.lanelet(west[0], west[1], element)) == names
+    environment = drawing.load(origin=None)
+    assert values(environment, "traffic_signal", "kind lanelet_id lane_s_m dynamic") == [
+        ("stop", str(names[0]), 40.0, False),
+        ("stop", str(names[1]), 39.0, False),
+    ]
+    assert values(environment, "stop_line", "lanelet_id lane_s_m") == [(str(names[0]), 40.0), (str(names[1]), 39.0)]
+
+
+def test_a_sign_that_applies_only_under_a_condition_is_dynamic() -> None:
+    drawing = Drawing(local=True, globe=False)
+    element = drawing.element(refers=[drawing.way([(5.0, -5.0), (5.0, -5.4)], "traffic_sign", "de276")])
+    drawing.tag_last(dynamic="yes")
+    drawing.lanelet(drawing.way([(0.0, 0.0), (40.0, 0.0)]), drawing.way([(0.0, -3.5), (40.0, -3.5)]), element)
+    assert values(drawing.load(origin=None), "traffic_signal", "kind dynamic") == [("no_overtaking", True)]
+
+
 def test_a_map_on_the_globe_needs_its_origin() -> None:
     drawing = Drawing()
     road(drawing)

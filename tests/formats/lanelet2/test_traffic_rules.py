@@ -114,6 +114,58 @@ def test_who_may_use_a_lanelet_with_these_tags(tags: dict[str, str], expected: t
     assert lane_with_tags(**tags)[0] == expected
 
 
+@pytest.mark.parametrize(
+    ("tags", "lane_type", "unread"),
+    [
+        ({"participant__vehicle__bus": "yes", "participant__vehicle__motorcycle": "yes"}, "bus", False),
+        ({"participant__vehicle__taxi": "yes", "participant__vehicle__motorcycle": "yes"}, "taxi", False),
+        ({"participant__vehicle__motorcycle": "yes"}, "driving", True),
+        ({"participant__vehicle__truck": "yes", "participant__vehicle__bus": "yes"}, "driving", True),
+        ({"subtype": "exit", "participant__vehicle__bus": "yes"}, "exit", True),
+        ({"participant__vehicle__car": "yes", "participant__vehicle__bus": "yes"}, "driving", False),
+        ({"participant__vehicle__emergency": "yes"}, "restricted", False),
+    ],
+)
+def test_a_lanelet_that_cars_may_not_use_is_of_another_type_or_named(
+    tags: dict[str, str], lane_type: str, unread: bool
+) -> None:
+    lane, environment = lane_with_tags(**tags)
+    assert lane is not None
+    assert lane[0] == lane_type
+    named = [row for row in environment.tables["map_quality"].to_pylist() if row["check_id"] == "access_unread"]
+    assert len(named) == unread
+
+
+@pytest.mark.parametrize("mandatory", ["no", "false", "yes"])
+@pytest.mark.parametrize("tag", ["speed_limit_mandatory", "speed_limit_mandatory__vehicle"])
+def test_a_recommended_speed_is_no_limit(tag: str, mandatory: str) -> None:
+    _, environment = lane_with_tags(speed_limit="30", **{tag: mandatory})
+    limits = [round(3.6 * row["limit_mps"]) for row in environment.tables["speed_limit"].to_pylist()]
+    assert limits == ([30] if mandatory == "yes" else [])
+
+
+@pytest.mark.parametrize("dynamic", ["yes", "no", ""])
+def test_a_limit_that_changes_is_unknown(dynamic: str) -> None:
+    drawing = Drawing()
+    left, right = (drawing.way([(0.0, y), (50.0, y)]) for y in (0.0, -3.5))
+    said = [
+        drawing.element("speed_limit", refers=[drawing.way([(5.0, -5.0), (5.0, -5.5)], "traffic_sign", "de274-50")])
+    ]
+    if dynamic:
+        drawing.tag_last(dynamic=dynamic)
+    drawing.lanelet(left, right, said[0], speed_limit="30")
+    environment = drawing.load()
+    rows = [(row["limit_mps"], row["source"]) for row in environment.tables["speed_limit"].to_pylist()]
+    checks = [(row["check_id"], row["message"]) for row in environment.tables["map_quality"].to_pylist()]
+    if dynamic == "yes":
+        assert rows == [(None, "unread")]
+        message = "its limit is dynamic: what it is at a time is not in the map: treated as unknown"
+        assert checks == [("invalid_speed", message)]
+    else:
+        assert rows == [(pytest.approx(50 / 3.6), "sign")]
+        assert not checks
+
+
 def test_a_crosswalk_that_is_a_lane_is_no_crossing() -> None:
     found, environment = lane_with_tags(subtype="crosswalk", participant__vehicle="yes")
     assert found == ("driving", True, False)

@@ -110,6 +110,25 @@ def test_signs() -> None:
     assert values(environment, "traffic_signal", "x_m y_m")[:2] == [(60.0, -5.5), (40.0, 4.5)]
 
 
+def test_lanes_of_a_ban_on_overtaking_with_a_plate_are_named() -> None:
+    road = two_way()
+    for name, kind in ((51, 56), (52, 17)):
+        plate = road.sign(name, (60.0, -5.5, 2.0), kind, logical=[1]).supplementary_sign.add()
+        plate.classification.type = 5
+    opposite = road.sign(53, (60.0, 5.5, 2.0), 56, logical=[2])
+    opposite.supplementary_sign.add().classification.type = 2
+    off = opposite.supplementary_sign.add().classification
+    off.type, off.is_out_of_service = 5, True
+    environment = road.load()
+    assert values(environment, "map_quality", "check_id lanelet_id message") == [
+        (
+            "sign_condition_unread",
+            "1",
+            "traffic sign 51 applies only as its plates state (type 5): when it applies is not known",
+        )
+    ]
+
+
 def test_a_sign_without_a_lane_is_told() -> None:
     road = two_way()
     road.sign(51, (60.0, -5.5, 2.0), 17)

@@ -172,6 +172,43 @@ def test_who_may_drive_on_a_lane(may: str, kind: str, drivable: bool) -> None:
     assert lanelet(found, "a_0", "lane_type drivable") == (kind, drivable)
 
 
+@pytest.mark.parametrize(
+    ("may", "kind", "unread"),
+    [
+        ('allow="bus taxi motorcycle bicycle"', "bus", False),
+        ('allow="truck delivery"', "driving", True),
+        ('allow="pedestrian delivery bicycle"', "driving", True),
+        ('allow="bus truck"', "driving", True),
+        ('allow="motorcycle"', "driving", True),
+        ('allow="private"', "driving", True),
+        ('disallow="passenger"', "driving", True),
+        ('disallow="truck"', "driving", False),
+        ('allow="passenger"', "driving", False),
+        ('allow="hov motorcycle"', "HOV", False),
+    ],
+)
+def test_a_lane_that_cars_may_not_use_is_of_another_type_or_named(may: str, kind: str, unread: bool) -> None:
+    found = net(edge("a", lane("a", 0, "0,0 50,0", may), ends=("x", "y")))
+    assert lanelet(found, "a_0", "lane_type drivable") == (kind, True)
+    assert values(found, "map_quality", "check_id lanelet_id") == [("access_unread", "a_0")] * unread
+    if unread:
+        assert messages(found, "access_unread") == [f"cars may not use it ({may}), which no lane type shows"]
+
+
+@pytest.mark.parametrize(
+    ("more", "kind"),
+    [
+        ('acceleration="1"', "entry"),
+        ('acceleration="true"', "entry"),
+        ('acceleration="0"', "driving"),
+        ('acceleration="1" allow="bus"', "bus"),
+    ],
+)
+def test_an_acceleration_lane_is_an_entry(more: str, kind: str) -> None:
+    found = net(edge("a", lane("a", 0, "0,0 50,0", more), ends=("x", "y")))
+    assert lanelet(found, "a_0", "lane_type drivable") == (kind, True)
+
+
 def test_left_hand_nets_say_so() -> None:
     lanes = lane("a", 0, "0,4.8 50,4.8"), lane("a", 1, "0,1.6 50,1.6")
     parts = edge("a", *lanes, ends=("x", "y"), more='type="highway.motorway"')

@@ -18,6 +18,7 @@ import shapely
 from drivelint.formats import safe_xml
 from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.lane_geometry import LARGEST_COORDINATE_M
+from drivelint.road.sign_conditions import KINDS_WITH_UNREAD_CONDITIONS, add_unread_condition
 from drivelint.road.signcodes import signal_kind, turns_of_light_direction
 
 if TYPE_CHECKING:
@@ -189,7 +190,10 @@ def signal_rows(
         place = points(element.find("position"))
         stands = place[0] + offset if len(place) else None
         turns = turns_of_light_direction((element.findtext("direction") or "").strip()) if light else None
+        plates = [each.code for each in elements if _is_restrictive_plate(each)]
         for lane, line_s_m in holds.get(name, ()):
+            if plates and any(part.kind in KINDS_WITH_UNREAD_CONDITIONS for part in elements):
+                add_unread_condition(signs.quality, lane.lanelet_id, f"sign {name}", ", ".join(plates))
             for part in elements:
                 s = _signal_station(lane, part.kind, stands, line_s_m)
                 unit = "m/s" if part.kind in _SPEED_KINDS and part.value is not None else None

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats.lanelet2.file import attribute, line_points
+from drivelint.formats.lanelet2.traffic_rules import is_dynamic
 from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
 from drivelint.road.signcodes import signal_kind
 from drivelint.road.tables import Rows, stop_line_row
@@ -53,7 +54,13 @@ def _signal_rows(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float,
             said = {"country": attribute(x, "region") or None, "type": attribute(element, "subtype")}
             rows += [
                 signal_row(
-                    lane, s, place, signal_id=str(element.id), kind=kind, dynamic=kind == "traffic_light", **said
+                    lane,
+                    s,
+                    place,
+                    signal_id=str(element.id),
+                    kind=kind,
+                    **said,
+                    dynamic=kind == "traffic_light" or is_dynamic(element),
                 )
                 for kind in _signal_kinds(element, x)
             ]
@@ -75,6 +82,8 @@ def _signal_kinds(element: Any, lanelet: Any) -> list[str]:
     if subtype == "right_of_way":
         yields = {x.id for x in _parameter_members(element, "yield")}
         return ["give_way" if lanelet.id in yields else "priority_here"]
+    if subtype == "all_way_stop":
+        return ["stop"]
     if subtype == "traffic_sign":
         signs = _parameter_members(element, "refers")
         return sorted({kind for sign in signs if (kind := _sign_kind(attribute(sign, "subtype"))) is not None})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from drivelint.errors import MapError
 from drivelint.formats.lanelet2.file import attribute, line_points, load_map_and_is_local
 from drivelint.formats.lanelet2.furniture import furniture_rows
-from drivelint.formats.lanelet2.traffic_rules import TrafficRules, limit_text
+from drivelint.formats.lanelet2.traffic_rules import TrafficRules, is_dynamic, limit_text
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.geo_reference import tangent_plane_frame
@@ -77,13 +77,15 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         lefts[_bound_key(x.leftBound)].append(x)
         rights[_bound_key(x.rightBound)].append(x)
     for x in lanelets:
-        lane_type, drivable, bidirectional = access[x.id]
+        lane_type, drivable, bidirectional, is_unread = access[x.id]
+        if is_unread:
+            message = "cars may not use it by its tags participant:*, which no lane type shows"
+            quality.add("access_unread", "warning", str(x.id), message)
         limit_mps = rules.limit_mps(x)
         readable = limit_mps is None or math.isfinite(limit_mps)
         limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
-            said = limit_text(x)
-            what = "its sign has no limit that can be read" if said is None else f"{said[:20]!r} is not a speed limit"
+            what = _why_no_limit(x)
             quality.add("invalid_speed", "warning", str(x.id), f"{what}: treated as unknown")
         lane = BoundedLane(
             str(x.id), line_points(x.leftBound), line_points(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
@@ -100,6 +102,14 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             x, lefts[_bound_key(right)], rights[_bound_key(right, is_reversed=True)]
         )
         yield lane
+
+
+def _why_no_limit(lanelet: Any) -> str:
+    """Return why the limit that a lanelet states is not known."""
+    if any(attribute(rule, "subtype") == "speed_limit" and is_dynamic(rule) for rule in lanelet.regulatoryElements):
+        return "its limit is dynamic: what it is at a time is not in the map"
+    said = limit_text(lanelet)
+    return "its sign has no limit that can be read" if said is None else f"{said[:20]!r} is not a speed limit"
 
 
 def _neighbour_id_and_against(

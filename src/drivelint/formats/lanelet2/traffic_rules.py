@@ -24,10 +24,11 @@ _LANE_TYPE_BY_SUBTYPE: Final[Mapping[str, str]] = {
 _ROADSIDE_SUBTYPES: Final = frozenset({"road_shoulder", "pedestrian_lane"})
 """Autoware's subtypes of lanes beside the road, which the library does not know. Whatever their tags, they are not for driving."""
 _LANE_TYPE_BY_VEHICLE: Final = {
-    "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:motorcycle": "driving", "vehicle:bus": "bus",
-    "vehicle:taxi": "taxi",
+    "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:bus": "bus", "vehicle:taxi": "taxi",
+    "vehicle:motorcycle": "driving",
 }  # fmt: skip
 """Motor vehicle -> type of a lane that it may use, but none of the vehicles listed before it."""
+_CAR: Final = "vehicle:car"
 _LANE_TYPE_BY_PARTICIPANT: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
 _SPEED_PATTERN: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
 _UNITS_MPS: Final = {
@@ -37,12 +38,22 @@ _UNITS_MPS: Final = {
 _LIMIT_TAGS: Final = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
 
 
+_MANDATORY_TAGS: Final = tuple(name.replace("speed_limit", "speed_limit_mandatory") for name in _LIMIT_TAGS)
+_TRUE_WORDS: Final = frozenset({"yes", "true", "1"})
+_FALSE_WORDS: Final = frozenset({"no", "false", "0"})
+"""The library reads these as booleans."""
+
+
 class LaneAccess(NamedTuple):
-    """The type of a lane, whether motor vehicles may drive on it, and whether they may do so in both directions."""
+    """The type of a lane, whether motor vehicles may drive on it, and whether they may do so in both directions.
+
+    `is_unread`: cars may not drive on it, which its type does not show.
+    """
 
     lane_type: str
     drivable: bool
     bidirectional: bool
+    is_unread: bool = False
 
 
 class TrafficRules:
@@ -67,7 +78,8 @@ class TrafficRules:
         for word, lane_type in _LANE_TYPE_BY_VEHICLE.items():
             if self._of[word].canPass(lanelet):
                 both_ways = not self._of[word].isOneWay(lanelet)
-                return LaneAccess(of_subtype if of_subtype == "exit" else lane_type, True, both_ways)
+                kind = of_subtype if of_subtype == "exit" else lane_type
+                return LaneAccess(kind, True, both_ways, is_unread=word != _CAR and kind in {"driving", "exit"})
         if of_subtype is None:
             return None
         may_pass = [
@@ -81,9 +93,12 @@ class TrafficRules:
     def limit_mps(self, lanelet: Any) -> float | None:
         """Return the limit (m/s) of a lanelet's sign, else of its tag; a nation's default is not used.
 
-        None: the map states no limit; NaN: the stated limit cannot be read.
+        None: the map states no limit; NaN: the stated limit cannot be read, or it changes.
         """
-        signed = any(attribute(rule, "subtype") == "speed_limit" for rule in lanelet.regulatoryElements)
+        signs = [rule for rule in lanelet.regulatoryElements if attribute(rule, "subtype") == "speed_limit"]
+        if any(is_dynamic(sign) for sign in signs):
+            return math.nan
+        signed = len(signs) > 0
         of_sign = self._sign_limit_mps(lanelet) if signed else math.nan
         if of_sign > 0.0:
             return of_sign
@@ -102,8 +117,16 @@ class TrafficRules:
 
 
 def limit_text(lanelet: Any) -> str | None:
-    """Return the text of the tag that limits the speed of vehicles on a lanelet; None without such a tag."""
+    """Return the text of the tag that limits the speed of vehicles on a lanelet; None without one, or if it only recommends a speed."""
+    mandatory = next((attribute(lanelet, name) for name in _MANDATORY_TAGS if name in lanelet.attributes), "yes")
+    if mandatory in _FALSE_WORDS:
+        return None
     return next((attribute(lanelet, name) for name in _LIMIT_TAGS if name in lanelet.attributes), None)
+
+
+def is_dynamic(element: Any) -> bool:
+    """Return whether a regulatory element applies only under a condition, such as at certain hours or when a variable sign shows it."""
+    return attribute(element, "dynamic") in _TRUE_WORDS
 
 
 def speed_mps(text: str) -> float:

@@ -11,6 +11,7 @@ import shapely
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 from drivelint.road.boundary_lanes import signal_row
+from drivelint.road.sign_conditions import KINDS_WITH_UNREAD_CONDITIONS, add_unread_condition
 from drivelint.road.signcodes import signal_kind
 from drivelint.road.tables import crossing_row, stop_line_row
 
@@ -156,13 +157,17 @@ def _rows_of_sign(sign: Any, map_lanes: _MapLanes, quality: MapQuality) -> Itera
         "unit": None if value is None else kinds.UNITS.get(classification.value.value_unit),
         "dynamic": classification.variability in kinds.CHANGING_VARIABILITIES,
     }  # fmt: skip
-    return _signal_rows(
-        f"traffic sign {sign.id.value}",
-        row,
-        map_lanes.assigned_lanes(classification, base),
-        map_lanes.map_position(base),
-        quality,
-    )
+    description = f"traffic sign {sign.id.value}"
+    lanes = map_lanes.assigned_lanes(classification, base)
+    plates = [
+        f"type {plate.type}"
+        for plate in (each.classification for each in sign.supplementary_sign)
+        if plate.type != kinds.NO_PLATE_TYPE and not plate.is_out_of_service
+    ]
+    if plates and row["kind"] in KINDS_WITH_UNREAD_CONDITIONS:
+        for lane in lanes:
+            add_unread_condition(quality, lane.lanelet_id, description, ", ".join(plates))
+    return _signal_rows(description, row, lanes, map_lanes.map_position(base), quality)
 
 
 def _bulbs_by_signal(bulbs: Iterable[Any]) -> dict[str, list[Any]]:

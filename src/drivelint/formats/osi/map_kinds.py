@@ -35,6 +35,8 @@ SYMBOL_MARKING_TYPE: Final = 3
 SIGN_KINDS: Final[dict[int, str]] = _words_by_number("sign_kinds")
 CHANGING_VARIABILITIES: Final = frozenset({3, 5, 6})
 """Values of `TrafficSign.Variability` for signs whose content changes."""
+NO_PLATE_TYPE: Final = 2
+"""The `TrafficSign.SupplementarySign.Classification.Type` of a plate that shows nothing."""
 UNITS: Final[dict[int, str]] = _words_by_number("units")
 SPEED_UNITS_MPS: Final = {"km/h": 1 / 3.6, "mph": 0.44704}
 TURNS_BY_LIGHT_ICON: Final[dict[int, list[str]]] = _words_by_number("turns")

@@ -49,20 +49,24 @@ _ADDED_POINT_DISTANCE_M: Final = 0.5
 """The distance of an added point from the end of a line inside a junction."""
 _LEAST_BEND_COSINE: Final = 0.85
 """A point is added only if the cosine of the angle between the line and the joined lane is at least this."""
+_CAR: Final = "passenger"
+_OTHER_CLASSES_OF_DRIVING_LANES: Final = frozenset({"private", "truck", "delivery", "evehicle", "trailer"})
 _CLASSES_BY_LANE_KIND: Final = (
-    # the type of a lane is the first of these with a class that may drive on it
-    ("driving", {"passenger", "private", "truck", "delivery", "motorcycle", "evehicle", "trailer"}),
+    # the type of a lane without cars or lorries is the first of these with a class that may drive on it
     ("bus", {"bus", "coach"}),
     ("taxi", {"taxi"}),
     ("HOV", {"hov"}),
+    ("driving", {"motorcycle"}),
     ("tram", {"tram", "cable_car"}),
     ("rail", {"rail", "rail_urban", "rail_electric", "rail_fast", "subway"}),
     ("biking", {"bicycle", "moped", "scooter"}),
     ("sidewalk", {"pedestrian", "wheelchair"}),
     ("restricted", {"emergency", "authority", "army", "vip", "custom1", "custom2", "container"}),
 )
-_ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _CLASSES_BY_LANE_KIND))
-_DRIVABLE_KINDS: Final = frozenset({"driving", "bus", "taxi", "HOV"})
+_ALL_CLASSES: Final = frozenset({_CAR}).union(
+    _OTHER_CLASSES_OF_DRIVING_LANES, *(classes for _, classes in _CLASSES_BY_LANE_KIND)
+)
+_DRIVABLE_KINDS: Final = frozenset({"driving", "bus", "taxi", "HOV", "entry"})
 _ROAD_TYPE_BY_EDGE_TYPE: Final = {
     "motorway": "motorway",
     "motorway_link": "motorway",
@@ -180,7 +184,16 @@ def _bounded_lane(
     limit = float(element.attrib["speed"])
     if not 0 < half < math.inf or not 0 <= limit < math.inf:
         raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s is not possible")
-    kind = _lane_kind(element.get("allow"), element.get("disallow"))
+    kind, is_access_unread = _lane_kind_and_is_access_unread(element.get("allow"), element.get("disallow"))
+    if is_access_unread:
+        what = " ".join(
+            f'{name}="{element.get(name)}"' for name in ("allow", "disallow") if element.get(name) is not None
+        )
+        quality.add(
+            "access_unread", "warning", element.get("id"), f"cars may not use it ({what}), which no lane type shows"
+        )
+    if kind == "driving" and element.get("acceleration") in {"true", "1"}:
+        kind = "entry"
     inside = edge.get("function") == "internal"
     # inside a junction the speed is what the bend allows, not a limit
     is_default = imported is not None and imported.has_default_limit(element, edge, limit)
@@ -194,12 +207,16 @@ def _bounded_lane(
     )  # fmt: skip
 
 
-def _lane_kind(allow: str | None, disallow: str | None) -> str:
+def _lane_kind_and_is_access_unread(allow: str | None, disallow: str | None) -> tuple[str, bool]:
+    """Return the type of a lane, and whether cars may not use it although it has the type of a lane for them."""
     if allow is not None:
-        may = _ALL_CLASSES if allow == "all" else set(allow.split())
+        may = _ALL_CLASSES if allow == "all" else frozenset(allow.split())
     else:
-        may = _ALL_CLASSES - (_ALL_CLASSES if disallow == "all" else set((disallow or "").split()))
-    return next((kind for kind, classes in _CLASSES_BY_LANE_KIND if classes & may), "none")
+        may = _ALL_CLASSES - (_ALL_CLASSES if disallow == "all" else frozenset((disallow or "").split()))
+    if _CAR in may or may & _OTHER_CLASSES_OF_DRIVING_LANES:
+        return "driving", _CAR not in may
+    kind = next((kind for kind, classes in _CLASSES_BY_LANE_KIND if classes & may), "none")
+    return kind, kind == "driving"
 
 
 def _shape_points(shape: str) -> Floats:
