@@ -23,8 +23,9 @@ WITH ego_log AS (
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS has_signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS is_road_type_given,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'engaged') AS is_engaged_given,
-        -- A log has the actors around the ego, unless its format shows that they were not recorded.
-        NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'no_road_users') AS has_road_users,
+        -- A log has the actors around the ego, unless its format or its recorder's options show that not all were recorded.
+        NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id IN ('no_road_users', 'road_users_left_out')) AS has_road_users,
+        EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'road_users_left_out') AS has_some_road_users,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id) AS has_others,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS has_classes,
         coalesce((SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'unmapped_class'), why('no_actor_classes')) AS no_classes_reason
@@ -82,7 +83,7 @@ ego_input AS (
         {'signal': 'brake_light', 'is_of_map': false, 'available': s.has_brake_light, 'reason_available': why('has_brake_light'), 'reason_missing': why('no_brake_light')},
         {'signal': 'ego_size', 'is_of_map': false, 'available': s.has_ego_size, 'reason_available': why('has_ego_size'), 'reason_missing': why('no_ego_size')},
         {'signal': 'speeds', 'is_of_map': false, 'available': s.has_speeds, 'reason_available': why('has_speeds'), 'reason_missing': why('assumed_speeds')},
-        {'signal': 'road_users', 'is_of_map': false, 'available': s.has_road_users, 'reason_available': why('has_road_users'), 'reason_missing': why('no_road_users')},
+        {'signal': 'road_users', 'is_of_map': false, 'available': s.has_road_users, 'reason_available': why('has_road_users'), 'reason_missing': CASE WHEN s.has_some_road_users THEN why('road_users_left_out') ELSE why('no_road_users') END},
         -- A vehicle of unknown kind may be a bicycle. A log without other actors needs no classes.
         {'signal': 'actor_classes', 'is_of_map': false, 'available': s.has_classes OR NOT s.has_others,
             'reason_available': CASE WHEN s.has_others THEN why('has_actor_classes') ELSE why('nobody_else') END, 'reason_missing': s.no_classes_reason},

@@ -22,9 +22,12 @@ MESSAGES = {
     "Pose": "position 1 Vector3, orientation 2 Quaternion",
     "Color": "r 1 double, g 2 double, b 3 double, a 4 double",
     "CubePrimitive": "pose 1 Pose, size 2 Vector3, color 3 Color",
+    "CylinderPrimitive": "pose 1 Pose, size 2 Vector3, bottom_scale 3 double, top_scale 4 double",
+    "SpherePrimitive": "pose 1 Pose, size 2 Vector3, color 3 Color",
+    "ModelPrimitive": "pose 1 Pose, scale 2 Vector3, url 5 string",
     "KeyValuePair": "key 1 string, value 2 string",
     "SceneEntity": "timestamp 1 T, frame_id 2 string, id 3 string, lifetime 4 D, frame_locked 5 bool, metadata 6 *KeyValuePair, "
-    "cubes 8 *CubePrimitive",
+    "cubes 8 *CubePrimitive, spheres 9 *SpherePrimitive, cylinders 10 *CylinderPrimitive, models 14 *ModelPrimitive",
     "SceneEntityDeletion": "timestamp 1 T, type 2 Kind, id 3 string",
     "SceneUpdate": "deletions 1 *SceneEntityDeletion, entities 2 *SceneEntity",
     "FrameTransform": "timestamp 1 T, parent_frame_id 2 string, child_frame_id 3 string, translation 4 Vector3, rotation 5 Quaternion",

@@ -9,10 +9,12 @@ import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
+from drivelint.engine.batch import Drive
 from drivelint.errors import TraceError
 from tests.formats.foxglove import foxglove_log as fox
 from tests.formats.logs import actors, at, log, quality, read, states
 from tests.formats.osi import osi_log
+from tests.scenes import judged
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -208,6 +210,59 @@ def test_no_box_no_id(tmp_path: Path) -> None:
     assert quality(trace)["dropped_row"]["severity"] == "error"
     with pytest.raises(TraceError, match="no entity on '/scene' has a cube and an id"):
         seen(tmp_path, [fox.scene(T0, fox.entity("line", T0, 0.0, cubes=[]))])
+
+
+def walker(t_s: float, word: str = "pedestrian", **bodies: Any) -> dict[str, Any]:
+    """Return an entity with these bodies and no cube, 18 m ahead of where the car starts."""
+    said = [{"key": "class", "value": word}] if word else []
+    return {**fox.entity("walker", t_s, 0.0), "cubes": [], "metadata": said, **bodies}
+
+
+POSE = {"position": {"x": 18.0, "y": 2.0, "z": 0.9}, "orientation": {"w": 1.0}}
+CYLINDER = {
+    "cylinders": [{"pose": POSE, "size": {"x": 0.6, "y": 0.7, "z": 1.8}, "bottom_scale": 1.0, "top_scale": 1.0}]
+}
+SPHERE = {"spheres": [{"pose": POSE, "size": {"x": 0.6, "y": 0.7, "z": 1.8}}]}
+MODEL = {"models": [{"pose": POSE, "scale": {"x": 1.0, "y": 1.0, "z": 1.0}, "url": "package://walker.dae"}]}
+
+
+def with_walker(word: str = "pedestrian", **bodies: Any) -> list[fox.Message]:
+    own = [{"key": "class", "value": "car"}]
+    return [
+        fox.scene(t_s, fox.entity("car", t_s, i * 1.0, 2.0, metadata=own), walker(t_s, word, **bodies))
+        for i, t_s in ((i, T0 + i / 10) for i in range(30))
+    ]
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("bodies", "size", "verdict"),
+    [
+        (CYLINDER, (0.6, 0.7, 1.8), "fail"),
+        (SPHERE, (0.6, 0.7, 1.8), "fail"),
+        (MODEL, (None, None, None), "unknown"),
+        (MODEL | CYLINDER, (0.6, 0.7, 1.8), "fail"),
+    ],
+)
+def test_a_road_user_without_a_cube_is_one_all_the_same(
+    tmp_path: Path, encoding: str, bodies: dict[str, Any], size: tuple[float | None, ...], verdict: str
+) -> None:
+    trace = seen(tmp_path, with_walker(**bodies), encoding, ego="car")
+    found = actors(trace)["walker"]
+    assert (found["actor_class"], found["length_m"], found["width_m"], found["height_m"]) == ("pedestrian", *size)
+    assert (at(trace, "walker", T0 + 0.5)["x_m"], at(trace, "walker", T0 + 0.5)["y_m"]) == (18.0, 2.0)
+    assert "no_box" not in quality(trace)
+    (result,) = judged([Drive(trace, None)], rules=["ukhc.no-collision"])
+    assert result["verdict"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("word", "bodies"), [("", CYLINDER), ("lane", CYLINDER), ("pedestrian", {}), ("pedestrian", {"models": []})]
+)
+def test_what_has_no_class_or_no_body_is_no_road_user(tmp_path: Path, word: str, bodies: dict[str, Any]) -> None:
+    trace = seen(tmp_path, with_walker(word, **bodies), ego="car")
+    assert set(actors(trace)) == {"car"}
+    assert quality(trace)["no_box"]["n"] == 30
 
 
 def test_damaged_message(tmp_path: Path) -> None:

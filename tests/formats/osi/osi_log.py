@@ -19,6 +19,7 @@ _SCALARS = {
     "int64": _F.TYPE_INT64,
     "uint32": _F.TYPE_UINT32,
     "string": _F.TYPE_STRING,
+    "bool": _F.TYPE_BOOL,
 }
 # message -> its fields: name, number, type; a * means repeated, an upper-case type is a message, E: an enumeration
 MESSAGES = {
@@ -34,7 +35,8 @@ MESSAGES = {
     "MovingObject": "id 1 Identifier, base 2 BaseMoving, type 3 E:ObjectType, vehicle_classification 6 VehicleClassification, "
     "model_reference 7 string",
     "BaseStationary": "dimension 1 Dimension3d, position 2 Vector3d, orientation 3 Orientation3d",
-    "LightClassification": "color 1 E:Color, icon 2 uint32, mode 3 E:Mode, assigned_lane_id 5 *Identifier",
+    "LightClassification": "color 1 E:Color, icon 2 uint32, mode 3 E:Mode, assigned_lane_id 5 *Identifier, "
+    "is_out_of_service 6 bool",
     "ExternalReference": "reference 1 string, type 2 string, identifier 3 *string",
     "TrafficLight": "id 1 Identifier, base 2 BaseStationary, classification 3 LightClassification, source_reference 5 *ExternalReference",
     "GroundTruth": "timestamp 2 Timestamp, host_vehicle_id 3 Identifier, moving_object 5 *MovingObject, traffic_light 7 *TrafficLight, "

@@ -118,3 +118,18 @@ def test_bulbs_beside_each_other_are_one_light(tmp_path: Path) -> None:
     assert {r["signal_id"]: r["state"] for r in states if r["t_ns"] == 0} == {
         "10": "red", "20": "green", "32": "green", "42": "green",
     }  # fmt: skip
+
+
+def test_a_light_that_is_out_of_service_is_dark(tmp_path: Path) -> None:
+    """A bulb of the second light is out of service, and so is the whole third one, from its second frame on."""
+    frames = osi_log.drive(2)
+    for k, truth in enumerate(frames):
+        for number, color, signal in ((10, 2, "a"), (20, 2, "b"), (21, 4, "b"), (30, 2, "c")):
+            bulb(truth, number, color, 3, signal)
+        for number in (20, 30)[: k + 1]:
+            light = next(each for each in truth.traffic_light if each.id.value == number)
+            light.classification.is_out_of_service = True
+    states = read(write(tmp_path, frames)).tables["signal_state"].to_pylist()
+    assert [(r["signal_id"], r["t_ns"] // 100_000_000, r["state"]) for r in states] == [
+        ("a", 0, "red"), ("a", 1, "red"), ("b", 0, "green"), ("b", 1, "green"), ("c", 0, "red"), ("c", 1, "off"),
+    ]  # fmt: skip

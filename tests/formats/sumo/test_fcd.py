@@ -8,10 +8,12 @@ import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 import pytest
 
+from drivelint.engine.batch import Drive
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.sumo import fcd_xml
 from tests.formats.logs import actors, at, log, put, quality, read, states
 from tests.formats.sumo.fcd_text import ROWS, TYPES, csv, table, xml
+from tests.scenes import judged
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,6 +29,36 @@ def test_xml_csv_and_parquet_are_one_log(tmp_path: Path) -> None:
     assert rows[0] == rows[1] == rows[2]
     assert len(rows[0]) == 40
     assert {log(trace)["format"] for trace in found} == {"sumo-fcd"}
+
+
+@pytest.mark.parametrize(
+    ("option", "is_selection"),
+    [
+        ('<device.fcd.probability value="0.1"/>', True),
+        ('<device.fcd.probability value="0"/>', True),
+        ('<device.fcd.explicit value="a.0,b.0"/>', True),
+        ('<person-device.fcd.probability value="0.5"/>', True),
+        ('<fcd-output.filter-edges.input-file value="edges.txt"/>', True),
+        ('<fcd-output.filter-shapes value="area"/>', True),
+        ('<person-fcd-output value="persons.xml"/>', True),
+        ('<device.fcd.probability value="1.0"/>', False),
+        ('<device.fcd.probability value="-1"/>', False),
+        ('<device.fcd.explicit value=""/>', False),
+        ('<device.fcd.radius value="50"/>', False),
+        ('<fcd-output.acceleration value="true"/>', False),
+    ],
+)
+def test_rules_about_others_are_unknown_if_only_some_road_users_were_written(
+    tmp_path: Path, option: str, is_selection: bool
+) -> None:
+    put(tmp_path / "r.rou.xml", TYPES)
+    text = xml().replace("<sumoConfiguration/>", f"<sumoConfiguration><output>{option}</output></sumoConfiguration>")
+    trace = read(put(tmp_path / "a.xml", text), ego="a.0")
+    assert ("road_users_left_out" in quality(trace)) == is_selection
+    (found,) = judged([Drive(trace, None)], rules=["ukhc.no-collision"])
+    assert (found["verdict"], found["reason_code"]) == (
+        ("unknown", "missing_road_users") if is_selection else ("pass", "kept")
+    )
 
 
 def test_line_by_line_is_what_the_parser_reads(tmp_path: Path) -> None:

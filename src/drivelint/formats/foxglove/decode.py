@@ -33,6 +33,7 @@ TRANSFORMS: Final = "foxglove.FrameTransforms"
 _TIME_FIELDS: Final = {"seconds": None, "nanos": None, "sec": None, "nsec": None}
 _XYZ_FIELDS: Final = {"x": None, "y": None, "z": None}
 _QUATERNION_FIELDS: Final = {**_XYZ_FIELDS, "w": None}
+_POSE_FIELDS: Final = {"position": _XYZ_FIELDS, "orientation": _QUATERNION_FIELDS}
 _TRANSFORM_FIELDS: Final = {
     "timestamp": _TIME_FIELDS, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ_FIELDS, "rotation": _QUATERNION_FIELDS,
 }  # fmt: skip
@@ -46,13 +47,16 @@ FIELD_TREES: Final[dict[str, FieldTree]] = {
             "lifetime": _TIME_FIELDS,
             "frame_locked": None,
             "metadata": {"key": None, "value": None},
-            "cubes": {"pose": {"position": _XYZ_FIELDS, "orientation": _QUATERNION_FIELDS}, "size": _XYZ_FIELDS},
+            **{name: {"pose": _POSE_FIELDS, "size": _XYZ_FIELDS} for name in ("cubes", "cylinders", "spheres")},
+            "models": {"pose": _POSE_FIELDS},
         },
     },
     TRANSFORM: _TRANSFORM_FIELDS,
     TRANSFORMS: {"transforms": _TRANSFORM_FIELDS},
 }
-_LIST_FIELDS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
+_LIST_FIELDS: Final = frozenset(
+    {"deletions", "entities", "metadata", "cubes", "cylinders", "spheres", "models", "transforms"}
+)
 _TEXT_FIELDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
 _MIN_JSON_BLOCK_BYTES: Final = 1 << 20
 

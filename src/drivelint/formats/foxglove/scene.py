@@ -1,7 +1,7 @@
 """Reads Foxglove scenes in MCAP. The first cube of an entity is the road user's box.
 
-The position of a cube is the centre of its box, in the entity's frame. Scenes have no velocities, which are derived later, and no ego,
-which `--ego` names.
+The position of a cube is the centre of its box, in the entity's frame. An entity with a class but without a cube is also a road user, if it
+has a cylinder, a sphere or a model. Scenes have no velocities, which are derived later, and no ego, which `--ego` names.
 """
 
 from __future__ import annotations
@@ -55,16 +55,19 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
+    from drivelint.formats.coordinate_frames import Vectors
     from drivelint.formats.mcap.reader import Container
 
 CLASS_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of an entity's metadata whose value can be its class."""
+_BODIES_OF_CLASSED_ENTITIES: Final = ("cylinders", "spheres", "models")
+"""The bodies, the preferred one first, that show where an entity with a class is. Lines, arrows and texts are none."""
 DELETE_ALL: Final = 1
 
 
 @dataclass
 class _TopicContent:
-    """The content of one topic with scenes. `without_box`: number of entities without a cube."""
+    """The content of one topic with scenes. `without_box`: number of entities that have no body."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
     deletions: list[tuple[Times, Mask, Times, list[str | None]]] = field(default_factory=list)
@@ -134,25 +137,19 @@ def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str
 
 def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) -> None:
     entities, message = list_items_and_row_indices(decoded, "entities")
-    lists = struct_field(entities, "cubes")
-    none = pa.types.is_null(lists.type)
-    count = np.zeros(len(entities), np.int64) if none else pc.fill_null(pc.list_value_length(lists), 0).to_numpy()
-    boxed = count > 0
-    scene.without_box += int((~boxed).sum())
-    cubes = pa.nulls(0) if none else lists.flatten()
-    cubes = cubes.take(pa.array((np.cumsum(count) - count)[boxed]))
-    entities = entities.filter(pa.array(boxed))
-    message = message[boxed]
-    pose = struct_field(cubes, "pose")
+    classes = _class_codes(entities)
+    place, turn, size, has_body = _bodies(entities, classes)
+    scene.without_box += int((~has_body).sum())
+    entities = entities.filter(pa.array(has_body))
     scene.rows.append(
         recorded_poses(
             times(struct_field(entities, "timestamp")),
-            (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
-            log_ns=log_ns[message],
+            (place[has_body], turn[has_body]),
+            log_ns=log_ns[message[has_body]],
             ids=_text_as_bytes(entities, "id"),
             frames=_text_as_bytes(entities, "frame_id"),
-            size=vectors(cubes, "size"),
-            classes=_class_codes(entities),
+            size=size[has_body],
+            classes=classes[has_body],
             lifetime_ns=times(struct_field(entities, "lifetime"))[0],
             locked=pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(
                 zero_copy_only=False
@@ -166,6 +163,26 @@ def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) 
         every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
         whom = [None if all_ else names[i] for i, all_ in zip(which, every, strict=True)]
         scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
+
+
+def _bodies(entities: pa.Array, classes: Codes) -> tuple[Vectors, Vectors, Vectors, Mask]:
+    """Return places, quaternions and sizes of entities (n, 3 or 4), and for each whether it has a body; NaN: not known.
+
+    A body is the first cube or, of an entity with a class, the first other body. A model has no size: its file is not in the log.
+    """
+    n = len(entities)
+    place, turn, size = (np.full((n, columns), np.nan) for columns in (3, 4, 3))
+    has_body = np.zeros(n, np.bool_)
+    for name in ("cubes", *_BODIES_OF_CLASSED_ENTITIES):
+        items, parent = list_items_and_row_indices(entities, name)
+        rows, first = np.unique(parent, return_index=True)
+        chosen = ~has_body[rows] if name == "cubes" else ~has_body[rows] & (classes[rows] >= 0)
+        rows, items = rows[chosen], items.take(pa.array(first[chosen]))
+        pose = struct_field(items, "pose")
+        place[rows], turn[rows] = vectors(pose, "position"), vectors(pose, "orientation", "xyzw")
+        size[rows] = vectors(items, "size")
+        has_body[rows] = True
+    return place, turn, size, has_body
 
 
 def _text_as_bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
@@ -207,7 +224,10 @@ def _recording(
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
-        message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
+        message = (
+            f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users, as they have no class, or no "
+            "cylinder, sphere or model either"
+        )
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = set_times_and_return_are_own_times({topic: rows}, findings)
     frames = _transform_tree(transforms, own_times=own_times)

@@ -57,7 +57,7 @@ _GROUND_TRUTH_FIELDS: FieldTree = {
     },
     "traffic_light": {
         "id": _ID,
-        "classification": {"color": None, "mode": None},
+        "classification": {"color": None, "mode": None, "is_out_of_service": None},
         "source_reference": {"type": None, "identifier": None},
     },
 }

@@ -110,12 +110,15 @@ def _headlight_codes(dipped_beam: Codes, main_beam: Codes) -> Codes:
 def bulb_state_rows(enum_codes: EnumCodes, truth: pa.Array, light_by_bulb: Mapping[str, str]) -> pa.Table:
     """Return one row per message and bulb of a traffic light: frame, id of the signal, and bit of the bulb's state.
 
-    The signal is the OpenDRIVE signal to which the bulb refers, otherwise the light in `light_by_bulb`, otherwise the bulb alone.
+    The signal is the OpenDRIVE signal to which the bulb refers, otherwise the light in `light_by_bulb`, otherwise the bulb alone. A bulb
+    that is out of service is covered, crossed out or switched off: it is dark, whatever its colour and mode.
     """
     bulbs, frame = list_items_and_row_indices(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
     mode, color = (enum_codes.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
     shown = np.where(mode == LIT, color, mode)
+    out_of_service = pc.fill_null(struct_field(seen, "is_out_of_service").cast(pa.bool_()), False)
+    shown = np.where(out_of_service.to_numpy(zero_copy_only=False), 0, shown)
     bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
     return pa.table(
         {"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, light_by_bulb), pa.string()), "bits": bits}

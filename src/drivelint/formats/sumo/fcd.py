@@ -106,12 +106,22 @@ def read(probe: Probe) -> Recording:
         recording.lost_times.append(
             LostTime(last_ns, None, f"{path.name} ends without </{ROOT_TAG}>: its writer did not finish it")
         )
+    if rows.selection_options:
+        recording.findings.append(_selection_finding(rows.selection_options))
     add_light_states(recording, path, _is_fcd_file)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
         recording.lost_times += lost_times
     return recording
+
+
+def _selection_finding(options: tuple[str, ...]) -> QualityFinding:
+    message = (
+        f"by its configuration, SUMO wrote only some of the road users ({name_list(list(options))}): who else was around the ego is "
+        "not known, and rules about other actors are unknown"
+    )
+    return QualityFinding("road_users_left_out", "warning", message)
 
 
 def _lost_times(time_s: Floats, lost_rows: Mask, cause: str) -> list[LostTime]:

@@ -23,6 +23,11 @@ ROOT_TAG: Final = "fcd-export"
 _STEP_END_PATTERN: Final = r"</timestep>|<timestep\s[^<>]*/>"
 _STEP_TAG: Final = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
 _FCD_OPTION: Final = re.compile(rb'<(fcd-output(?:\.geo)?) +value="([^"]*)"')
+_SELECTION_OPTION: Final = re.compile(
+    rb"<((?:person-)?device\.fcd\.(?:probability|explicit)|fcd-output\.filter-(?:edges\.input-file|shapes)|person-fcd-output)"
+    rb' +value="([^"]+)"'
+)
+"""The options with which SUMO writes only some of the road users into the file."""
 _TRUE_WORDS: Final = frozenset({b"1", b"yes", b"true", b"on", b"x", b"t"})
 
 
@@ -36,13 +41,26 @@ def read_xml(path: Path) -> Rows:
         kind = np.full(len(columns["time"]), VEHICLE, np.int8)
     rows = typed_rows(path, columns, kind)
     head = content[: content.find(f"<{ROOT_TAG}".encode())]
-    return rows._replace(geo_option=_has_geo_option(head), lacks_end=lacks_end)
+    return rows._replace(
+        geo_option=_has_geo_option(head), selection_options=_selection_options(head), lacks_end=lacks_end
+    )
 
 
 def _has_geo_option(head: bytes) -> bool | None:
     """Return whether SUMO's configuration, a comment before the data, asks for longitude and latitude; None without a configuration."""
     options = dict(_FCD_OPTION.findall(head))
     return options.get(b"fcd-output.geo", b"").lower() in _TRUE_WORDS if options else None
+
+
+def _selection_options(head: bytes) -> tuple[str, ...]:
+    """Return the options of SUMO's configuration by which some road users are not written, as `name=value`."""
+    found = [(name.decode(), value.decode("utf-8", "replace")) for name, value in _SELECTION_OPTION.findall(head)]
+    # a negative probability is SUMO's default, with which every road user is written
+    return tuple(
+        f"{name}={value}"
+        for name, value in found
+        if not (name.endswith("probability") and not 0.0 <= safe_xml.number_or_nan(value) < 1.0)
+    )
 
 
 def columns_from_lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:

@@ -33,12 +33,14 @@ class Rows(NamedTuple):
 
     `table["vehicle"]`: the vehicle in which a passenger rides, "": it is no passenger, NULL: not stated. `kind` (n,): index of `KINDS`,
     `PERSON_OR_CONTAINER` or `UNKNOWN_KIND`. `geo_option`: whether SUMO's options, which may precede the data, ask for longitude and
-    latitude; None: there are no options. `lacks_end`: the end tag of the file was missing.
+    latitude; None: there are no options. `selection_options`: those with which only some road users are written. `lacks_end`: the end
+    tag of the file was missing.
     """
 
     table: pa.Table
     kind: Codes
     geo_option: bool | None = None
+    selection_options: tuple[str, ...] = ()
     lacks_end: bool = False
 
     def numbers(self, name: str) -> Floats:
