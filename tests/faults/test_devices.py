@@ -70,7 +70,7 @@ def test_it_is_no_log_no_map_no_mapping_and_no_file_of_waivers(place: Path) -> N
 
 @pytest.mark.timeout(60)
 def test_a_part_of_a_drive_that_is_a_pipe_is_not_there(tmp_path: Path) -> None:
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     (folder / "actor.parquet").unlink()
     os.mkfifo(folder / "actor.parquet")
     with pytest.raises(TraceError, match=r"actor\.parquet|no ego"):

@@ -45,10 +45,10 @@ class Source:
     options: dict[str, Any] = field(default_factory=dict)
     protected: bool = False
 
-    def written(self, folder: Path, changed: dict[str, bytes] | None = None) -> Path:
+    def write(self, folder: Path, changes: dict[str, bytes] | None = None) -> Path:
         """Write the files, some of them changed, and return the path that is given to the reader, whose name is the folder's."""
         folder.mkdir(parents=True)
-        for name, data in {**self.files, **(changed or {})}.items():
+        for name, data in {**self.files, **(changes or {})}.items():
             (folder / self._name(name, folder)).write_bytes(data)
         return folder / self._name(self.entry, folder) if self.entry else folder
 
@@ -277,6 +277,6 @@ def scratch() -> Path:
     return Path(tempfile.mkdtemp(prefix="drivelint-fuzz-"))
 
 
-def removed(folder: Path) -> None:
+def remove_folder(folder: Path) -> None:
     """Remove a folder with what it holds."""
     shutil.rmtree(folder, ignore_errors=True)
