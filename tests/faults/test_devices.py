@@ -104,13 +104,13 @@ def test_what_does_not_fit_ends_the_run_where_a_limit_is_set(monkeypatch: pytest
     assert "ulimit -v" in str(error)
 
 
-@pytest.mark.parametrize(("said", "kept"), [("0", None), ("00", None), ("", None), ("80", "80")])
+@pytest.mark.parametrize(("columns", "expected"), [("0", None), ("00", None), ("", None), ("80", "80")])
 def test_a_terminal_without_columns_is_one_of_unknown_width(
-    said: str, kept: str | None, monkeypatch: pytest.MonkeyPatch
+    columns: str, expected: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("COLUMNS", said)
+    monkeypatch.setenv("COLUMNS", columns)
     streams.make_stdout_and_stderr_writable()
-    assert os.environ.get("COLUMNS") == kept
+    assert os.environ.get("COLUMNS") == expected
 
 
 def command(*args: str) -> list[str]:
