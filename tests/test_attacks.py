@@ -165,9 +165,9 @@ def columns_of(table: pa.Table) -> Columns:
 
 
 @cache
-def scenes(topic: str, most: int | None) -> tuple[Scene, ...]:
+def scenes(topic: str, max_scenes: int | None) -> tuple[Scene, ...]:
     file = document.read(SCENES / f"{topic}.yml")
-    return tuple(scenes_of(file.scenes[:most], file.roads))
+    return tuple(scenes_of(file.scenes[:max_scenes], file.roads))
 
 
 def worse(clean: VerdictsOfScenes, attacked: VerdictsOfScenes) -> list[str]:
@@ -187,15 +187,15 @@ def clean(
     """Return what judges the first scenes of topics, as they are."""
 
     @cache
-    def judge(topics: tuple[str, ...], most: int) -> tuple[list[Scene], VerdictsOfScenes]:
-        chosen = [scene for topic in topics for scene in scenes(topic, most)]
+    def judge(topics: tuple[str, ...], max_scenes: int) -> tuple[list[Scene], VerdictsOfScenes]:
+        chosen = [scene for topic in topics for scene in scenes(topic, max_scenes)]
         return chosen, judge_scenes(chosen, ["status:stable"], tmp_path_factory.mktemp("clean") / "scenes")
 
     return judge
 
 
 @pytest.mark.parametrize(
-    ("topics", "most"),
+    ("topics", "max_scenes"),
     [
         pytest.param(("following", "speeds"), 2, marks=pytest.mark.ci),
         pytest.param(tuple(TOPICS), 4, marks=pytest.mark.slow),
@@ -207,9 +207,9 @@ def clean(
     ids=lambda attack: attack.__name__,
 )
 def test_no_verdict_rests_on_a_fault_of_the_recorder(
-    attack: Attack, topics: tuple[str, ...], most: int, clean: Any, tmp_path: Path
+    attack: Attack, topics: tuple[str, ...], max_scenes: int, clean: Any, tmp_path: Path
 ) -> None:
-    chosen, before = clean(topics, most)
+    chosen, before = clean(topics, max_scenes)
     faulty = [Attacked(scene.text, scene.layout, scene.left, scene.name, attack) for scene in chosen]
     after = judge_scenes(faulty, ["status:stable"], tmp_path / "scenes")
     decided = [key for key in after.rows if after.verdict(key) in {"pass", "fail"}]

@@ -39,16 +39,16 @@ def frames(collision_at: int | None = None) -> list[Any]:
     return found
 
 
-def written(tmp_path: Path, collision_at: int | None = None, **options: Any) -> bytes:
+def whole_log(tmp_path: Path, collision_at: int | None = None, **options: Any) -> bytes:
     path = tmp_path / "whole.mcap"
     options = {"chunk_size": 600, "enable_data_crcs": False, **options}
     return osi_log.write(path, osi_log.truths(frames(collision_at)), **options).read_bytes()
 
 
-def judged(tmp_path: Path, data: bytes, *others: Path) -> drivelint.CheckResult:
+def check_result(tmp_path: Path, data: bytes, *more_logs: Path) -> drivelint.CheckResult:
     path = tmp_path / "bad.mcap"
     path.write_bytes(data)
-    return drivelint.check([path, *others], rules=NO_COLLISION, annotate=False, robustness=False)
+    return drivelint.check([path, *more_logs], rules=NO_COLLISION, annotate=False, robustness=False)
 
 
 def verdicts(result: drivelint.CheckResult, name: str) -> list[Row]:
@@ -67,13 +67,13 @@ def without_chunk(data: bytes, k: int) -> bytes:
 
 
 def test_the_whole_log_passes(tmp_path: Path) -> None:
-    result = judged(tmp_path, written(tmp_path))
+    result = check_result(tmp_path, whole_log(tmp_path))
     assert (result.exit_code, {row["verdict"] for row in verdicts(result, "bad")}) == (0, {"pass"})
 
 
 def test_no_verdict_over_a_lost_chunk(tmp_path: Path, good: Path) -> None:
-    data = written(tmp_path)
-    result = judged(tmp_path, without_chunk(data, 4), good)
+    data = whole_log(tmp_path)
+    result = check_result(tmp_path, without_chunk(data, 4), good)
     assert (result.exit_code, drive(result, "bad")["lossy"], drive(result, "good")["lossy"]) == (3, True, False)
     (lost,) = (found for found in drive(result, "bad")["quality"] if found["check_id"] == "lost_time")
     begin, end = places(data, CHUNK)[4]
@@ -93,9 +93,9 @@ def test_no_verdict_over_a_lost_chunk(tmp_path: Path, good: Path) -> None:
 @pytest.mark.ci
 def test_one_lost_frame_is_a_hole_too(tmp_path: Path) -> None:
     """Two periods without a frame are none where nobody knows that one was recorded; here it is known."""
-    data = written(tmp_path, use_chunking=False)
+    data = whole_log(tmp_path, use_chunking=False)
     begin, _ = places(data, MESSAGE)[10]
-    result = judged(tmp_path, replaced(data, begin + 9 + 22, b"\xff" * 12))
+    result = check_result(tmp_path, replaced(data, begin + 9 + 22, b"\xff" * 12))
     holes = {
         (row["verdict"], row["t_start_ns"], row["t_end_ns"])
         for row in verdicts(result, "bad")
@@ -108,8 +108,8 @@ def test_one_lost_frame_is_a_hole_too(tmp_path: Path) -> None:
 @pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("at", [5, N - 6])
 def test_a_judged_step_that_fails_stands(tmp_path: Path, at: int) -> None:
-    data = written(tmp_path, at)
-    result = judged(tmp_path, without_chunk(data, 4))
+    data = whole_log(tmp_path, at)
+    result = check_result(tmp_path, without_chunk(data, 4))
     failed = [row for row in verdicts(result, "bad") if row["verdict"] == "fail"]
     assert failed
     assert all(abs(row["t_worst_ns"] - at * PERIOD_NS) < 5 * PERIOD_NS for row in failed)
@@ -118,7 +118,7 @@ def test_a_judged_step_that_fails_stands(tmp_path: Path, at: int) -> None:
 
 @pytest.mark.sample(1, ci=4)
 @pytest.mark.parametrize(
-    ("damage", "code", "told"),
+    ("damage", "code", "phrase"),
     [
         (lambda _: b"", 4, "the file is empty"),
         (lambda _: b"<html>404 Not Found</html>", 4, "begins b'<html>40' at byte 0"),
@@ -138,13 +138,13 @@ def test_a_judged_step_that_fails_stands(tmp_path: Path, at: int) -> None:
         "compression",
     ],
 )  # fmt: skip
-def test_faults(tmp_path: Path, good: Path, damage: Any, code: int, told: str) -> None:
+def test_faults(tmp_path: Path, good: Path, damage: Any, code: int, phrase: str) -> None:
     """The faults of one file have one exit code each, and its sentence; the other drive is judged as if alone."""
-    result = judged(tmp_path, damage(written(tmp_path)), good)
+    result = check_result(tmp_path, damage(whole_log(tmp_path)), good)
     assert result.exit_code == code
     row = drive(result, "bad")
     assert row["status"] == ("not_judged" if code == 4 else "judged")
-    assert told in (row["status_reason"] or "") + " ".join(found["message"] for found in row["quality"])
+    assert phrase in (row["status_reason"] or "") + " ".join(found["message"] for found in row["quality"])
     assert (drive(result, "good")["status"], drive(result, "good")["lossy"]) == ("judged", False)
     assert {found["verdict"] for found in verdicts(result, "good")} == {"pass"}
 
@@ -152,7 +152,7 @@ def test_faults(tmp_path: Path, good: Path, damage: Any, code: int, told: str) -
 @pytest.mark.ci
 def test_a_damaged_log_is_annotated_without_its_own_messages(tmp_path: Path) -> None:
     path = tmp_path / "bad.mcap"
-    path.write_bytes(without_chunk(written(tmp_path), 4))
+    path.write_bytes(without_chunk(whole_log(tmp_path), 4))
     result = drivelint.check([path], rules=NO_COLLISION, out=tmp_path / "out")
     (annotated,) = (tmp_path / "out" / "annotated").glob("bad-*.mcap")
     assert not any("not annotated" in note for note in result.notes)

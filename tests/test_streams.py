@@ -40,9 +40,9 @@ def test_a_full_stdout_is_told_in_one_line() -> None:
         assert subprocess.run([*COMMAND, "nonsense"], stderr=full, check=False, env=ENV).returncode == 2
 
 
-def assert_inert(said: str) -> None:
-    assert not {char for char in said if ord(char) < 32 and char != "\n"} | (set(said) & {"\x9b", "\u202e", "\x7f"})
-    assert not [line for line in said.split("\n") if line.lstrip().startswith("::") or "##[" in line]
+def assert_inert(text: str) -> None:
+    assert not {char for char in text if ord(char) < 32 and char != "\n"} | (set(text) & {"\x9b", "\u202e", "\x7f"})
+    assert not [line for line in text.split("\n") if line.lstrip().startswith("::") or "##[" in line]
 
 
 def test_words_that_steer_a_terminal_are_shown() -> None:

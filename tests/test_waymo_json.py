@@ -24,7 +24,7 @@ def content(name: str) -> dict[str, Any]:
     return found
 
 
-def written(name: str, folder: Path) -> Path:
+def write_scenario(name: str, folder: Path) -> Path:
     return write(shared(f"perception/waymo_json/{name}.json"), folder)
 
 
@@ -38,7 +38,7 @@ def place(points: Any, step: int) -> tuple[float, float]:
 @pytest.mark.sample(2, ci=2)
 @pytest.mark.parametrize("name", FILES)
 def test_every_valid_state_is_there_and_no_other(name: str, tmp_path: Path) -> None:
-    told, trace = content(name)["objects"], read(written(name, tmp_path))
+    told, trace = content(name)["objects"], read(write_scenario(name, tmp_path))
     by_step = {(row["actor_id"], round(row["t_ns"] / 1e8)): row for row in states(trace)}
     expected = {
         (str(each.get("id", number)), step): (each, step)
@@ -60,7 +60,7 @@ def test_every_valid_state_is_there_and_no_other(name: str, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("name", FILES)
 def test_the_recorder_is_waymos_car(name: str, tmp_path: Path) -> None:
-    (ego,) = (row for row in actors(read(written(name, tmp_path))).values() if row["is_ego"])
+    (ego,) = (row for row in actors(read(write_scenario(name, tmp_path))).values() if row["is_ego"])
     assert (ego["length_m"], ego["width_m"]) == (pytest.approx(5.286), pytest.approx(2.332))
 
 
@@ -70,7 +70,7 @@ def test_the_recorder_is_waymos_car(name: str, tmp_path: Path) -> None:
     [("gpudrive_w4", 37, 0), ("gpudrive_w407", 76, 0), ("nocturne_n171", 210, 2), ("nocturne_n65", 74, 0)],
 )
 def test_the_maps_are_built_of_lines_alone(name: str, n_lanes: int, n_left_out: int, tmp_path: Path) -> None:
-    found = load_map(read_source(written(name, tmp_path)))
+    found = load_map(read_source(write_scenario(name, tmp_path)))
     assert found.tables["lanelet"].num_rows == n_lanes
     assert found.tables["map_quality"]["check_id"].to_pylist().count("invalid_lane") == n_left_out
     widths = found.tables["lanelet"]["width_m"].to_numpy()
@@ -79,7 +79,7 @@ def test_the_maps_are_built_of_lines_alone(name: str, n_lanes: int, n_left_out: 
 
 
 def test_the_lights_of_nocturne_stand_where_lanes_begin(tmp_path: Path) -> None:
-    told, path = content("nocturne_n171")["tl_states"], written("nocturne_n171", tmp_path)
+    told, path = content("nocturne_n171")["tl_states"], write_scenario("nocturne_n171", tmp_path)
     rows = load_map(read_source(path)).tables["traffic_signal"].to_pylist()
     assert len(rows) == len(told) == 11
     assert [row["lane_s_m"] for row in rows] == pytest.approx([0.0] * 11, abs=0.5)
@@ -95,7 +95,7 @@ def test_one_command_judges_all_of_them(tmp_path: Path) -> None:
     folder = tmp_path / "scenarios"
     folder.mkdir()
     for name in FILES:
-        written(name, folder)
+        write_scenario(name, folder)
     command = [
         sys.executable,
         "-m",

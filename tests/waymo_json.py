@@ -66,20 +66,20 @@ def _columns(points: Any) -> np.ndarray:
     return np.array(columns, np.float64).T
 
 
-def _track(name: str, each: dict[str, Any], *, degrees: bool) -> dict[str, Any]:
-    valid = np.array(each["valid"], np.bool_)
-    place, heading = _columns(each["position"]), np.array(each["heading"], np.float64)
+def _track(name: str, waymo_object: dict[str, Any], *, degrees: bool) -> dict[str, Any]:
+    valid = np.array(waymo_object["valid"], np.bool_)
+    place, heading = _columns(waymo_object["position"]), np.array(waymo_object["heading"], np.float64)
     state = {
         "position": np.pad(place, ((0, 0), (0, 3 - place.shape[1]))),
         "heading": np.radians(heading) if degrees else heading,
-        "velocity": _columns(each["velocity"])[:, :2],
+        "velocity": _columns(waymo_object["velocity"])[:, :2],
         "valid": valid,
-        **{size: np.full(len(valid), float(each.get(size, np.nan))) for size in ("length", "width", "height")},
+        **{size: np.full(len(valid), float(waymo_object.get(size, np.nan))) for size in ("length", "width", "height")},
     }
     return {
-        "type": _TYPES.get(each["type"], "OTHER"),
+        "type": _TYPES.get(waymo_object["type"], "OTHER"),
         "state": state,
-        "metadata": {"object_id": name, "type": each["type"]},
+        "metadata": {"object_id": name, "type": waymo_object["type"]},
     }
 
 

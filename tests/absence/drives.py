@@ -75,33 +75,33 @@ def drive() -> list[Frame]:
     ]
 
 
-def without(frames: list[Frame], missing: range, *names: str) -> list[Frame]:
+def without(frames: list[Frame], gap: range, *names: str) -> list[Frame]:
     """Return the drive without some cars in some frames; no name: without anybody."""
     return [
-        Frame(frame.t_s, [car for car in frame.cars if i not in missing or (names and car.name not in names)])
+        Frame(frame.t_s, [car for car in frame.cars if i not in gap or (names and car.name not in names)])
         for i, frame in enumerate(frames)
     ]
 
 
-def osi_with_host(frames: list[Frame], missing: range, host: int | None) -> list[Any]:
+def osi_with_host(frames: list[Frame], gap: range, host: int | None) -> list[Any]:
     """Return OSI ground truths that name another host, or none, in some frames."""
     truths = drives.truths(frames)
-    for i in missing:
+    for i in gap:
         truths[i].ClearField("host_vehicle_id")
         if host is not None:
             truths[i].host_vehicle_id.value = host
     return truths
 
 
-def osi_mcap_with_host(path: Path, frames: list[Frame], missing: range, host: int | None) -> Path:
+def osi_mcap_with_host(path: Path, frames: list[Frame], gap: range, host: int | None) -> Path:
     """Write such truths as MCAP."""
-    return osi_log.write(path.with_suffix(".mcap"), osi_log.truths(osi_with_host(frames, missing, host)))
+    return osi_log.write(path.with_suffix(".mcap"), osi_log.truths(osi_with_host(frames, gap, host)))
 
 
-def osi_file_with_host(path: Path, frames: list[Frame], missing: range, host: int | None) -> Path:
+def osi_file_with_host(path: Path, frames: list[Frame], gap: range, host: int | None) -> Path:
     """Write such truths as a trace file."""
     found = path.with_suffix(".osi")
-    messages = [truth.SerializeToString() for truth in osi_with_host(frames, missing, host)]
+    messages = [truth.SerializeToString() for truth in osi_with_host(frames, gap, host)]
     found.write_bytes(b"".join(len(each).to_bytes(4, "little") + each for each in messages))
     return found
 

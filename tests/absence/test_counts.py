@@ -23,7 +23,7 @@ RULE = "ukhc.no-collision"
 CAMERA = "/camera"
 
 
-def checked(path: Path, **options: Any) -> tuple[int, dict[str, str], list[str]]:
+def check_outcome(path: Path, **options: Any) -> tuple[int, dict[str, str], list[str]]:
     """Return exit code, findings by check, and verdicts."""
     result = drivelint.check([path], rules=RULE, annotate=False, robustness=False, **options)
     (drive,) = result.drives.arrow().to_pylist()
@@ -44,12 +44,12 @@ def foxglove(path: Path) -> bytes:
     return unchunked(path, foxglove_log.write(path, drives.scenes(drives.drive())))
 
 
-def unchunked(path: Path, written: Path, *, camera: bool = False) -> bytes:
+def unchunked(path: Path, log: Path, *, camera: bool = False) -> bytes:
     """Return a log with its messages outside of chunks, where one can be taken away and every CRC stays right; and one of a camera."""
     from mcap.reader import make_reader
 
     out = path.with_name("unchunked.mcap")
-    with written.open("rb") as source, out.open("wb") as sink:
+    with log.open("rb") as source, out.open("wb") as sink:
         writer = Writer(sink, use_chunking=False, enable_data_crcs=False, compression=CompressionType.NONE)
         writer.start()
         channels: dict[int, int] = {}
@@ -88,12 +88,12 @@ def test_a_message_is_missing(tmp_path: Path, write: Callable[[Path], bytes], cr
     path = tmp_path / "log.mcap"
     whole = write(path)
     path.write_bytes(crc(whole))
-    code, found, verdicts = checked(path, ego="0")
+    code, found, verdicts = check_outcome(path, ego="0")
     assert (code, verdicts.count("pass")) == (0, 2)
     assert "index_mismatch" not in found
     assert ("index_damaged" in found) == (crc is wrong_index_crc)
     path.write_bytes(crc(without_message(whole, 20)))
-    code, found, _ = checked(path, ego="0")
+    code, found, _ = check_outcome(path, ego="0")
     assert code == 3
     assert f"counts {drives.N} messages of topic " in found["index_mismatch"]
     assert (
@@ -109,10 +109,10 @@ def test_an_index_that_contradicts_itself_is_no_witness(tmp_path: Path) -> None:
     data = osi(path)
     at = places(data, STATISTICS)[0][0] + 9
     path.write_bytes(wrong_index_crc(replaced(data, at, struct.pack("<Q", drives.N + 5))))
-    code, found, _ = checked(path)
+    code, found, _ = check_outcome(path)
     assert (code, "index_mismatch" in found) == (0, False)
     path.write_bytes(with_index_crc(replaced(data, at, struct.pack("<Q", drives.N + 5))))
-    assert checked(path)[0] == 3
+    assert check_outcome(path)[0] == 3
 
 
 @pytest.mark.ci
@@ -120,10 +120,10 @@ def test_a_topic_that_is_not_read_is_no_matter(tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     data = unchunked(path, drives.ros(path, drives.drive()), camera=True)
     path.write_bytes(with_index_crc(without_message(data, drives.N + 1)))
-    code, found, _ = checked(path, ego="0")
+    code, found, _ = check_outcome(path, ego="0")
     assert (code, "index_mismatch" in found) == (0, False)
     path.write_bytes(with_index_crc(without_message(data, 3)))
-    code, found, _ = checked(path, ego="0")
+    code, found, _ = check_outcome(path, ego="0")
     assert code == 3
     assert CAMERA not in found["index_mismatch"]
 
@@ -135,7 +135,7 @@ def test_all_messages_of_the_topic_that_is_not_here_are_missing(tmp_path: Path) 
     for _ in range(3):
         data = without_message(data, drives.N)
     path.write_bytes(with_index_crc(data))
-    code, found, _ = checked(path, ego="0")
+    code, found, _ = check_outcome(path, ego="0")
     assert code == 3  # nobody knows what was on it
     assert f"counts 3 messages of topic '{CAMERA}', the file has 0" in found["index_mismatch"]
 
@@ -150,19 +150,19 @@ def test_the_index_of_a_chunk_names_a_message_that_is_not_in_it(tmp_path: Path) 
         osi_log.write(path, some, chunk_size=1 << 20, enable_data_crcs=False).read_bytes() for some in (messages, kept)
     )
     path.write_bytes(with_message_index_of(less, whole))
-    code, found, verdicts = checked(path)
+    code, found, verdicts = check_outcome(path)
     assert code == 3
     assert "at 2.000 s is lost: no rule is judged across this time" in found["lost_time"]
     assert "unknown" in verdicts
     path.write_bytes(less)
-    assert checked(path)[0] == 0
+    assert check_outcome(path)[0] == 0
 
 
-def with_message_index_of(data: bytes, other: bytes) -> bytes:
+def with_message_index_of(data: bytes, other_log: bytes) -> bytes:
     """Return a log of one chunk with the index of another log behind its chunk, and what the footer says moved by as much."""
     message_index = 7
-    ((begin, end),), ((other_begin, other_end),) = places(data, message_index), places(other, message_index)
-    data = data[:begin] + other[other_begin:other_end] + data[end:]
+    ((begin, end),), ((other_begin, other_end),) = places(data, message_index), places(other_log, message_index)
+    data = data[:begin] + other_log[other_begin:other_end] + data[end:]
     more = (other_end - other_begin) - (end - begin)
     ((at, _),) = places(data, FOOTER)
     start, offsets = struct.unpack_from("<QQ", data, at + 9)
@@ -170,7 +170,7 @@ def with_message_index_of(data: bytes, other: bytes) -> bytes:
     return with_index_crc(replaced(data, at + 9, struct.pack("<QQ", start + more, offsets + more if offsets else 0)))
 
 
-COUNTED = """rosbag2_bagfile_information:
+BAG_METADATA = """rosbag2_bagfile_information:
   version: 9
   storage_identifier: mcap
   relative_file_paths:
@@ -185,16 +185,16 @@ COUNTED = """rosbag2_bagfile_information:
 """
 
 
-@pytest.mark.parametrize(("lost", "code"), [(0, 0), (1, 3)])
-def test_the_description_of_a_bag_counts_more(tmp_path: Path, lost: int, code: int) -> None:
+@pytest.mark.parametrize(("n_lost", "code"), [(0, 0), (1, 3)])
+def test_the_description_of_a_bag_counts_more(tmp_path: Path, n_lost: int, code: int) -> None:
     bag = drives.bag(tmp_path / "bag", drives.drive())
-    (bag / "metadata.yaml").write_text(COUNTED.format(n=drives.N), encoding="utf-8")
+    (bag / "metadata.yaml").write_text(BAG_METADATA.format(n=drives.N), encoding="utf-8")
     messages = drives.things(drives.drive())
-    ros_log.write(bag / "b.mcap", messages[drives.N // 2 + lost :])
-    found = checked(bag, ego="0")
+    ros_log.write(bag / "b.mcap", messages[drives.N // 2 + n_lost :])
+    found = check_outcome(bag, ego="0")
     assert found[0] == code
     said = f"counts {drives.N} messages of topic '/carla/objects', the bag has {drives.N - 1}: 1 are lost"
-    assert (said in found[1].get("index_mismatch", "")) == bool(lost)
+    assert (said in found[1].get("index_mismatch", "")) == bool(n_lost)
 
 
 def test_a_canonical_folder_counts_more(tmp_path: Path) -> None:
@@ -204,5 +204,5 @@ def test_a_canonical_folder_counts_more(tmp_path: Path) -> None:
     folder = drives.canonical(tmp_path / "drive", drives.drive())
     pq.write_table(pa.table({"n_states": [3 * drives.N + 1]}), folder / "data_log.parquet")
     with pytest.raises(drivelint.DriveLintError, match=r"120 rows, but data_log\.parquet states 121") as error:
-        checked(folder, ego="0")
+        check_outcome(folder, ego="0")
     assert error.value.exit_code == 4

@@ -22,25 +22,25 @@ if TYPE_CHECKING:
     from tests.faults.drives import Frame
 
 RULE = "ukhc.no-collision"
-OWN = [name for name, each in FORMATS.items() if each.is_own]
+WITH_OWN_EGO = [name for name, each in FORMATS.items() if each.is_own]
 PICKED = [name for name, each in FORMATS.items() if not each.is_own]
 EMPTY = [name for name, each in FORMATS.items() if each.has_empty_frames]
 FROM, UNTIL, BETWEEN = range(20, N), range(54), range(20, 56)
 OSI = {"osi-mcap": drives.osi_mcap_with_host, "osi-file": drives.osi_file_with_host}
-Checked = tuple[int, dict[str, Any], list[dict[str, Any]]]
+Outcome = tuple[int, dict[str, Any], list[dict[str, Any]]]
 
 
-def checked(path: Path, **options: Any) -> Checked:
+def check_outcome(path: Path, **options: Any) -> Outcome:
     """Return the exit code, the drive and the verdicts of a check."""
     result = drivelint.check([path], rules=RULE, annotate=False, robustness=False, **options)
     (drive,) = result.drives.arrow().to_pylist()
     return result.exit_code, drive, result.verdicts.arrow().to_pylist()
 
 
-def of(name: str, folder: Path, frames: list[Frame], **options: Any) -> Checked:
+def of(name: str, folder: Path, frames: list[Frame], **options: Any) -> Outcome:
     """Return the check of a drive in a format."""
     path = FORMATS[name].write(folder / "log", frames)
-    return checked(path, **{**FORMATS[name].options(path), **options})
+    return check_outcome(path, **{**FORMATS[name].options(path), **options})
 
 
 def absence(drive: dict[str, Any]) -> list[str]:
@@ -48,15 +48,15 @@ def absence(drive: dict[str, Any]) -> list[str]:
     return [found["message"] for found in drive["quality"] if found["check_id"] == "ego_absent"]
 
 
-def require_missed(said: Checked, share: str, missing: range, ego: str = EGO) -> None:
+def require_missed(outcome: Outcome, share: str, gap: range, ego: str = EGO) -> None:
     """Require that the loss is said with its share, and that no verdict passes over a frame without the ego."""
-    code, drive, rows = said
+    code, drive, rows = outcome
     decided = any(row["verdict"] in {"pass", "fail"} for row in rows)
     assert (code, drive["lossy"]) == (3 if decided else 4, True)
     (message,) = absence(drive)
     named = "the ego" if ego == "ego" else f"the ego {ego}"
     assert message.startswith(f"{named} is absent for {share}, from "), message
-    start, begin, end = drive["t_start_ns"], missing.start * 10**8, missing[-1] * 10**8
+    start, begin, end = drive["t_start_ns"], gap.start * 10**8, gap[-1] * 10**8
     for row in rows:
         within = row["t_start_ns"] - start <= end and row["t_end_ns"] - start >= begin
         assert not (within and row["verdict"] in {"pass", "not_applicable"}), row
@@ -72,78 +72,78 @@ def test_the_whole_drive_is_a_collision(name: str, tmp_path: Path) -> None:
     assert drive["duration_s"] == pytest.approx(5.9)
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize("name", WITH_OWN_EGO)
 @pytest.mark.parametrize(
-    ("missing", "share"),
+    ("gap", "share"),
     [(FROM, "4.0 of 5.9 s (68 %)"), (UNTIL, "5.4 of 5.9 s (92 %)"), (BETWEEN, "3.7 of 5.9 s (63 %)")],
     ids=["from a frame on", "until a frame", "between two frames"],
 )
-def test_the_ego_is_gone(name: str, tmp_path: Path, missing: range, share: str) -> None:
-    require_missed(of(name, tmp_path, without(drives.drive(), missing, EGO)), share, missing, FORMATS[name].ego)
+def test_the_ego_is_gone(name: str, tmp_path: Path, gap: range, share: str) -> None:
+    require_missed(of(name, tmp_path, without(drives.drive(), gap, EGO)), share, gap, FORMATS[name].ego)
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize("name", WITH_OWN_EGO)
 def test_everybody_is_gone_between_two_frames(name: str, tmp_path: Path) -> None:
-    said = of(name, tmp_path, without(drives.drive(), BETWEEN))
-    require_missed(said, "3.7 of 5.9 s (63 %)", BETWEEN, FORMATS[name].ego)
+    outcome = of(name, tmp_path, without(drives.drive(), BETWEEN))
+    require_missed(outcome, "3.7 of 5.9 s (63 %)", BETWEEN, FORMATS[name].ego)
 
 
 @pytest.mark.parametrize("name", EMPTY)
 def test_everybody_is_gone_from_a_frame_on(name: str, tmp_path: Path) -> None:
     """What has no trace of a frame in which nobody is, a log of rows, just ends there."""
-    said = of(name, tmp_path, without(drives.drive(), FROM))
-    require_missed(said, "4.0 of 5.9 s (68 %)", FROM, FORMATS[name].ego)
-    assert said[1]["duration_s"] == pytest.approx(5.9)
+    outcome = of(name, tmp_path, without(drives.drive(), FROM))
+    require_missed(outcome, "4.0 of 5.9 s (68 %)", FROM, FORMATS[name].ego)
+    assert outcome[1]["duration_s"] == pytest.approx(5.9)
 
 
 @pytest.mark.parametrize("host", drives.HOSTS)
-@pytest.mark.parametrize("missing", [FROM, BETWEEN], ids=["from a frame on", "between two frames"])
+@pytest.mark.parametrize("gap", [FROM, BETWEEN], ids=["from a frame on", "between two frames"])
 @pytest.mark.parametrize("name", OSI)
-def test_everybody_is_gone_and_the_host_is_another(name: str, missing: range, host: str, tmp_path: Path) -> None:
-    path = OSI[name](tmp_path / "log", without(drives.drive(), missing), missing, drives.HOSTS[host])
+def test_everybody_is_gone_and_the_host_is_another(name: str, gap: range, host: str, tmp_path: Path) -> None:
+    path = OSI[name](tmp_path / "log", without(drives.drive(), gap), gap, drives.HOSTS[host])
     if drives.HOSTS[host] == 99:  # the host of most frames
         with pytest.raises(drivelint.DriveLintError, match="the log's ego '99' has no states") as error:
-            checked(path)
+            check_outcome(path)
         assert error.value.exit_code == 4
         return
-    require_missed(checked(path), "4.0 of 5.9 s (68 %)" if missing == FROM else "3.7 of 5.9 s (63 %)", missing)
+    require_missed(check_outcome(path), "4.0 of 5.9 s (68 %)" if gap == FROM else "3.7 of 5.9 s (63 %)", gap)
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize("name", WITH_OWN_EGO)
 def test_single_frames_that_lack_are_no_loss(name: str, tmp_path: Path) -> None:
     frames = without(without(drives.drive(), range(10, 11), EGO), range(30, 31), EGO)
     code, drive, _ = of(name, tmp_path, frames)
     assert (code, drive["lossy"], absence(drive)) == (1, False, [])
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize("name", WITH_OWN_EGO)
 def test_who_names_the_logs_own_ego_misses_it_too(name: str, tmp_path: Path) -> None:
     frames, ego = without(drives.drive(), FROM, EGO), FORMATS[name].ego
     require_missed(of(name, tmp_path, frames, ego=ego), "4.0 of 5.9 s (68 %)", FROM, ego)
 
 
 @pytest.mark.parametrize("name", PICKED)
-@pytest.mark.parametrize("missing", [FROM, UNTIL], ids=["from a frame on", "until a frame"])
-def test_one_of_many_that_drives_away_is_no_loss(name: str, missing: range, tmp_path: Path) -> None:
+@pytest.mark.parametrize("gap", [FROM, UNTIL], ids=["from a frame on", "until a frame"])
+def test_one_of_many_that_drives_away_is_no_loss(name: str, gap: range, tmp_path: Path) -> None:
     """A vehicle arrives, or leaves the recorded area: the user picked it, and it is judged while it is there."""
-    code, drive, rows = of(name, tmp_path, without(drives.drive(), missing, EGO))
+    code, drive, rows = of(name, tmp_path, without(drives.drive(), gap, EGO))
     assert (code, drive["lossy"], absence(drive)) == (0, False, [])
     (message,) = (found["message"] for found in drive["quality"] if found["check_id"] == "ego_chosen")
-    assert message.endswith(f"of its track, {'1.9' if missing == FROM else '0.5'} of 5.9 s of the log")
+    assert message.endswith(f"of its track, {'1.9' if gap == FROM else '0.5'} of 5.9 s of the log")
     assert {row["verdict"] for row in rows} <= {"pass", "unknown", "not_applicable"}
 
 
 @pytest.mark.parametrize("name", PICKED)
 def test_one_of_many_that_is_gone_between_two_frames_is_missed(name: str, tmp_path: Path) -> None:
     """Nobody leaves the world and comes back to it."""
-    said = of(name, tmp_path, without(drives.drive(), BETWEEN, EGO))
-    require_missed(said, "3.7 of 5.9 s of its track (63 %)", BETWEEN)
+    outcome = of(name, tmp_path, without(drives.drive(), BETWEEN, EGO))
+    require_missed(outcome, "3.7 of 5.9 s of its track (63 %)", BETWEEN)
 
 
 @pytest.mark.parametrize("name", ["osi-mcap", "bare parquet", "sumo", "commonroad"])
-@pytest.mark.parametrize("missing", [FROM, BETWEEN], ids=["from a frame on", "between two frames"])
-def test_every_vehicle_in_turn_has_the_time_of_its_track(name: str, missing: range, tmp_path: Path) -> None:
-    code, drive, _ = of(name, tmp_path, without(drives.drive(), missing, "2"), ego="all")
+@pytest.mark.parametrize("gap", [FROM, BETWEEN], ids=["from a frame on", "between two frames"])
+def test_every_vehicle_in_turn_has_the_time_of_its_track(name: str, gap: range, tmp_path: Path) -> None:
+    code, drive, _ = of(name, tmp_path, without(drives.drive(), gap, "2"), ego="all")
     assert (code, drive["lossy"], absence(drive)) == (1, False, [])
     assert [found["actor_id"] for found in drive["quality"] if found["check_id"] == "egos_chosen"] == [
         EGO if name == "osi-mcap" else None
@@ -163,7 +163,7 @@ def test_a_place_that_is_not_recorded_is_none(tmp_path: Path) -> None:
     for i in FROM:
         truths[i].moving_object[0].base.ClearField("position")
     path = osi_log.write(tmp_path / "log.mcap", osi_log.truths(truths))
-    require_missed(checked(path), "4.0 of 5.9 s (68 %)", FROM)
+    require_missed(check_outcome(path), "4.0 of 5.9 s (68 %)", FROM)
 
 
 @pytest.mark.slow
@@ -241,7 +241,7 @@ def test_a_frame_far_from_all_others_is_no_part_of_the_drive(tmp_path: Path) -> 
     for truth in truths:
         truth.timestamp.seconds += 1_700_000_000
     path = osi_log.write(tmp_path / "log.mcap", osi_log.truths([osi_log.frame(0), *truths]))
-    code, drive, _ = checked(path)
+    code, drive, _ = check_outcome(path)
     assert (code, drive["lossy"], drive["duration_s"]) == (1, False, pytest.approx(5.9))
 
 
@@ -251,32 +251,30 @@ def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
     messages = [ros_log.things(k / 10, ros_log.thing(1, 300.0, 4.0), topic="/objects") for k in range(60)]
     messages += [ros_log.odometry(k / 100, k / 10, 0.0, 0.0, 10.0) for k in range(600) if k < 200 or k >= 500]
     path = ros_log.write(tmp_path / "log.mcap", sorted(messages, key=lambda message: message[2]))
-    code, drive, rows = checked(path, ego_size="4.5,1.8")
+    code, drive, rows = check_outcome(path, ego_size="4.5,1.8")
     assert (code, drive["lossy"]) == (3, True)
     assert absence(drive) == [
         "the ego is absent for 3.0 of 6.0 s (50 %), from 1.990 s to 5.000 s: what it did in that time is unknown"
     ]
     assert len([row for row in rows if row["verdict"] == "unknown"]) <= 6
     trembling = [message for k, message in enumerate(messages) if k % 40]  # single samples lack
-    code, drive, _ = checked(
+    code, drive, _ = check_outcome(
         ros_log.write(tmp_path / "b.mcap", sorted(trembling, key=lambda m: m[2])), ego_size="4.5,1.8"
     )
-    assert absence(drive) == absence(checked(path, ego_size="4.5,1.8")[1])
+    assert absence(drive) == absence(check_outcome(path, ego_size="4.5,1.8")[1])
 
 
-@pytest.mark.parametrize(
-    "missing", [FROM, UNTIL, BETWEEN], ids=["from a frame on", "until a frame", "between two frames"]
-)
-def test_a_topic_of_road_users_falls_silent(tmp_path: Path, missing: range) -> None:
+@pytest.mark.parametrize("gap", [FROM, UNTIL, BETWEEN], ids=["from a frame on", "until a frame", "between two frames"])
+def test_a_topic_of_road_users_falls_silent(tmp_path: Path, gap: range) -> None:
     """Nobody there is a message without objects; without a message nobody knows."""
     frames = drives.drive()
     messages = [ros_log.odometry(t_s, cars[0].x, 0.0, 0.0, cars[0].vx) for t_s, cars in frames]
     others = [ros_log.things(t_s, ros_log.thing(1, cars[1].x, 0.0, 0.0, 6.0), topic="/objects") for t_s, cars in frames]
     empty = [ros_log.things(t_s, topic="/objects") for t_s, _ in frames]
-    heard = [each for k, each in enumerate(others) if k not in missing]
-    for beside, code in ((others, 1), (heard, 3), ([empty[k] if k in missing else others[k] for k in range(N)], 0)):
+    heard = [each for k, each in enumerate(others) if k not in gap]
+    for beside, code in ((others, 1), (heard, 3), ([empty[k] if k in gap else others[k] for k in range(N)], 0)):
         path = ros_log.write(tmp_path / "log.mcap", sorted([*messages, *beside], key=lambda message: message[2]))
-        found, drive, rows = checked(path, ego_size="4.5,1.8")
+        found, drive, rows = check_outcome(path, ego_size="4.5,1.8")
         lost = [each["message"] for each in drive["quality"] if each["check_id"] == "lost_time"]
         decided = any(row["verdict"] in {"pass", "fail"} for row in rows)
         assert (found, bool(lost)) == (code if decided else 4, code == 3)

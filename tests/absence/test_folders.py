@@ -68,7 +68,7 @@ def elsewhere(tmp_path: Path) -> Path:
     return folder
 
 
-def checked(folder: Path) -> tuple[int, dict[str, Any], str]:
+def check_outcome(folder: Path) -> tuple[int, dict[str, Any], str]:
     """Return exit code, status by file name, and the reasons of what was not judged."""
     result = drivelint.check([folder], rules=RULE, annotate=False, robustness=False)
     rows = result.drives.arrow().to_pylist()
@@ -78,9 +78,9 @@ def checked(folder: Path) -> tuple[int, dict[str, Any], str]:
 
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_a_check_names_it(logs: Path, elsewhere: Path, attack: str) -> None:
-    assert checked(logs)[0] == 0
+    assert check_outcome(logs)[0] == 0
     told = ATTACKS[attack](logs, elsewhere)
-    code, status, reasons = checked(logs)
+    code, status, reasons = check_outcome(logs)
     assert code == 4
     assert status == {"sound.mcap": "judged", told.partition(":")[0]: "not_judged"}
     assert told in reasons
@@ -119,7 +119,7 @@ def test_an_unreadable_folder(logs: Path, monkeypatch: pytest.MonkeyPatch) -> No
         return scandir(path)
 
     monkeypatch.setattr(os, "scandir", look)
-    code, status, reasons = checked(logs)
+    code, status, reasons = check_outcome(logs)
     assert (code, status) == (4, {"sound.mcap": "judged", "barred": "not_judged"})
     assert "barred: a folder that cannot be searched (Permission denied)" in reasons
     found = inspect(InspectRequest(str(logs / "sub")))
@@ -133,7 +133,7 @@ def test_a_folder_without_permission(logs: Path) -> None:
     barred.mkdir()
     barred.chmod(0)
     try:
-        code, status, _ = checked(logs)
+        code, status, _ = check_outcome(logs)
     finally:
         barred.chmod(0o700)
     assert (code, status) == (4, {"sound.mcap": "judged", "barred": "not_judged"})
@@ -147,4 +147,4 @@ def test_links_that_hide_nothing_are_no_matter(logs: Path, tmp_path: Path) -> No
     (logs / "sub" / "round").symlink_to(logs)
     (logs / "again.mcap").symlink_to(logs / "sound.mcap")
     (logs / "picture.png").symlink_to(tmp_path / "nowhere.png")
-    assert checked(logs)[0] == 0
+    assert check_outcome(logs)[0] == 0

@@ -9,7 +9,7 @@ import pytest
 from tests.annotate.runs import run, the
 from tests.annotate.viewer import messages
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import T0, TURN, along, ego, others, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, along, ego, road_users, ticks
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,9 +25,9 @@ def moving(parent: str) -> list[ros.Message]:
 @pytest.mark.parametrize(
     ("bag", "parents", "follows"),
     [
-        ([*moving("odom"), *others(frame="odom")], ["odom"], False),
-        ([*moving("map"), *others()], [], False),
-        ([CAMERA, *ego(), *others()], [], True),
+        ([*moving("odom"), *road_users(frame="odom")], ["odom"], False),
+        ([*moving("map"), *road_users()], [], False),
+        ([CAMERA, *ego(), *road_users()], [], True),
     ],
 )  # fmt: skip
 def test_the_frame_of_the_drawings_is_connected(

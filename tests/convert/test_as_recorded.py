@@ -92,7 +92,7 @@ DOUBTS: dict[str, Callable[[Rows], None]] = {
 """Check that doubts a track -> what is wrong with the track."""
 
 
-def written(path: Path, check: str) -> Path:
+def write_faulty_table(path: Path, check: str) -> Path:
     """Write a table of an ego and of a car with something wrong."""
     tracks = {"a": track(0.0), "b": track()}
     DOUBTS[check](tracks["b"])
@@ -108,26 +108,26 @@ def written(path: Path, check: str) -> Path:
     return table(path / "log.csv", ["t,id,x,y,yaw,vx,vy", *lines])
 
 
-def found(trace: Trace) -> list[dict[str, Any]]:
+def quality_rows(trace: Trace) -> list[dict[str, Any]]:
     rows = ego_independent_quality(trace).drop_columns("drive_id").to_pylist()
     # Parquet's checksums cover less than MCAP's, and the reader of OSI says itself that a clock goes back
     return [row for row in rows if row["check_id"] not in {"unprotected", "clock_jump"}]
 
 
-def same(one: Trace, other: Trace) -> None:
+def same(first: Trace, second: Trace) -> None:
     """Require that two logs are the same to whoever judges them."""
     for name in TABLES:
-        assert one.tables[name].drop_columns("drive_id") == other.tables[name].drop_columns("drive_id"), name
-    assert found(one) == found(other)
+        assert first.tables[name].drop_columns("drive_id") == second.tables[name].drop_columns("drive_id"), name
+    assert quality_rows(first) == quality_rows(second)
 
 
 @pytest.mark.sample(6, ci=12)
 @pytest.mark.parametrize("to", TO)
 @pytest.mark.parametrize("check", DOUBTS)
 def test_what_is_doubted_stays_and_is_said(tmp_path: Path, check: str, to: Target) -> None:
-    log, spec = written(tmp_path, check), mapping(tmp_path, LONG)
+    log, spec = write_faulty_table(tmp_path, check), mapping(tmp_path, LONG)
     original = read_trace(log, IngestOptions(mapping=spec))
-    assert check in {row["check_id"] for row in found(original)}
+    assert check in {row["check_id"] for row in quality_rows(original)}
     path = convert(ConvertRequest(str(log), to, tmp_path / "out", mapping=spec)).path
     recorded = [line.split(",") for line in log.read_text().splitlines()[1:]]
     expected = sorted((name, round(float(t) * 1e9), *map(float, values)) for t, name, *values in recorded)
@@ -166,7 +166,7 @@ def test_frames_in_which_nobody_is(tmp_path: Path, to: Target, restarts: bool) -
         frames += again
     log = osi_log.write(tmp_path / "log.mcap", osi_log.truths(frames))
     original = read_trace(log, IngestOptions())
-    (absent,) = (row for row in found(original) if row["check_id"] == "ego_absent")
+    (absent,) = (row for row in quality_rows(original) if row["check_id"] == "ego_absent")
     assert absent["message"].startswith("the ego 0 is absent for ")
     path = convert(ConvertRequest(str(log), to, tmp_path / "out")).path
     converted = read_trace(path, IngestOptions())
@@ -191,7 +191,7 @@ def test_an_ego_that_the_user_picked_is_no_recorder(tmp_path: Path, to: Target) 
     path = convert(ConvertRequest(str(log), to, tmp_path / "out", ego="1")).path
     same(read_trace(path, IngestOptions()), original)
     other = read_trace(path, IngestOptions(ego="2"))
-    assert [row["actor_id"] for row in found(other) if row["check_id"] == "ego_chosen"] == ["2"]
+    assert [row["actor_id"] for row in quality_rows(other) if row["check_id"] == "ego_chosen"] == ["2"]
     every = read_trace(log, IngestOptions(ego="all"))
     path = convert(ConvertRequest(str(log), to, tmp_path / "all", ego="all")).path
     same(read_trace(path, IngestOptions()), every)

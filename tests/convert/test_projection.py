@@ -25,9 +25,9 @@ TO: tuple[Target, ...] = ("mcap", "parquet")
 REFERENCE, OFFSET = FRAMES[3]
 
 
-def converted(to: Target, out: Path, monkeypatch: pytest.MonkeyPatch, given: Path | None = None) -> Trace:
+def converted(to: Target, out: Path, monkeypatch: pytest.MonkeyPatch, map_file: Path | None = None) -> Trace:
     monkeypatch.setattr("drivelint.convert.read_trace", lambda *_: in_frame(REFERENCE, OFFSET))
-    return read_trace(convert(ConvertRequest(str(LOG), to, out, map=given)).path, IngestOptions())
+    return read_trace(convert(ConvertRequest(str(LOG), to, out, map=map_file)).path, IngestOptions())
 
 
 @pytest.mark.parametrize("to", TO)
@@ -41,11 +41,11 @@ def test_it_is_kept(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("to", TO)
 def test_on_a_given_map_it_is_the_maps(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch) -> None:
-    given = road(tmp_path)
-    on_it = judged(in_frame(REFERENCE, OFFSET), given).trace
-    again = converted(to, tmp_path / "out", monkeypatch, given)
+    map_file = road(tmp_path)
+    on_it = judged(in_frame(REFERENCE, OFFSET), map_file).trace
+    again = converted(to, tmp_path / "out", monkeypatch, map_file)
     assert (again.geo_reference, again.geo_offset) == (on_it.geo_reference, on_it.geo_offset) != (REFERENCE, OFFSET)
-    assert numbers(judged(again, given).trace)["x_m"].tolist() == numbers(on_it)["x_m"].tolist()
+    assert numbers(judged(again, map_file).trace)["x_m"].tolist() == numbers(on_it)["x_m"].tolist()
 
 
 def test_a_projection_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

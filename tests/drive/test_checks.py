@@ -265,7 +265,7 @@ def test_sizes_that_vary_are_reported(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("classes", "known"),
+    ("classes", "actor_class"),
     [
         (["object"] + ["car"] * 9, "car"),
         (["object"] * 2 + ["car"] * 8, None),
@@ -275,7 +275,7 @@ def test_sizes_that_vary_are_reported(tmp_path: Path) -> None:
     ],
 )
 def test_a_class_that_changes_is_that_of_nearly_all_samples(
-    tmp_path: Path, classes: list[str], known: str | None
+    tmp_path: Path, classes: list[str], actor_class: str | None
 ) -> None:
     words = '\n[class]\ncolumn = "kind"\n[class.values]\n' + "".join(
         f'{name} = "{name}"\n' for name in {"car", *classes}
@@ -284,7 +284,7 @@ def test_a_class_that_changes_is_that_of_nearly_all_samples(
     for i, kind in enumerate(classes):
         lines += [f"{i / 10},a,{i},0,0,10,0,car", f"{i / 10},b,{i},6,0,10,0,{kind}"]
     trace = load(tmp_path, lines, LONG + words)
-    assert actors(trace)["b"]["actor_class"] == known
+    assert actors(trace)["b"]["actor_class"] == actor_class
     assert ("class_varies" in quality(trace)) == (len(set(classes)) > 1)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.drive.told import WAY, T, checks, column, read, unknown
+from tests.drive.actor_traces import WAY, T, checks, column, read, unknown
 from tests.ingested import ingested
 from tests.scenes import drive, moving, standing
 

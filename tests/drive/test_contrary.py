@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
-from tests.drive.told import checks, column, read, unknown
+from tests.drive.actor_traces import checks, column, read, unknown
 from tests.scenes import Actor, moving, road, times
 from tests.shared_data import shared
 

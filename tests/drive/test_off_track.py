@@ -30,7 +30,7 @@ RULES: Final = (
 SPEED: Final = 10.0
 
 
-def scene(kind: str, hz: float, who: str, *, told: bool, noise_m: float = 0.0) -> tuple[Drive, int]:
+def scene(kind: str, hz: float, actor_id: str, *, with_velocity: bool, noise_m: float = 0.0) -> tuple[Drive, int]:
     """Return two vehicles abreast, 0.4 m apart, at 10 m/s, one of them elsewhere from its middle sample on; and that sample's number.
 
     `kind`: what happens, and how far: `back`, `side` and `jump` for one sample, `stay` for good, `zero` to the origin for good.
@@ -41,10 +41,10 @@ def scene(kind: str, hz: float, who: str, *, told: bool, noise_m: float = 0.0) -
         "ego": moving("ego", WAY, t, 100 + SPEED * t, WAY.own),
         "x": moving("x", WAY, t, 101 + SPEED * t, WAY.own - 2.2),
     }
-    if not told:
+    if not with_velocity:
         nothing = np.full(len(t), np.nan)
         pair = {name: replace(actor, vx=nothing, vy=nothing) for name, actor in pair.items()}
-    actor, rng = pair[who], np.random.default_rng(3)
+    actor, rng = pair[actor_id], np.random.default_rng(3)
     x, y = actor.x + rng.normal(0, noise_m, len(t)), actor.y + rng.normal(0, noise_m, len(t))
     what, far = kind.rstrip("0123456789."), float(kind.lstrip("abcdefghijklmnopqrstuvwxyz") or 0)
     if what == "zero":
@@ -53,20 +53,20 @@ def scene(kind: str, hz: float, who: str, *, told: bool, noise_m: float = 0.0) -
         there = i >= k if what == "stay" else i == k
         x = x + {"back": -far, "side": 0.0}.get(what, far) * there
         y = y + (far if what == "side" else 0.0) * there
-    pair[who] = replace(actor, x=x, y=y)
-    return ingested(drive(pair.values(), WAY.environment, drive_id=f"{kind}/{hz:g}/{who}/{told}")), k
+    pair[actor_id] = replace(actor, x=x, y=y)
+    return ingested(drive(pair.values(), WAY.environment, drive_id=f"{kind}/{hz:g}/{actor_id}/{with_velocity}")), k
 
 
-def states(trace: Trace, who: str) -> list[dict[str, float | None]]:
-    rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"].split("#")[0] == who]
+def states(trace: Trace, actor_id: str) -> list[dict[str, float | None]]:
+    rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"].split("#")[0] == actor_id]
     return sorted(rows, key=lambda row: row["t_ns"])
 
 
-def wrong_speeds(trace: Trace, who: str) -> list[tuple[int, float, float]]:
+def wrong_speeds(trace: Trace, actor_id: str) -> list[tuple[int, float, float]]:
     """Return the states that move at another velocity than everybody does, with 0.6 m/s of tolerance; who stands at the origin does."""
     return [
         (i, row["vx_mps"], row["vy_mps"] or 0.0)
-        for i, row in enumerate(states(trace, who))
+        for i, row in enumerate(states(trace, actor_id))
         if row["vx_mps"] is not None
         and row["x_m"] != 0.0
         and np.hypot(row["vx_mps"] - SPEED, row["vy_mps"] or 0.0) > 0.6
@@ -83,27 +83,27 @@ BACK_STEPS: Final = [
 ]
 
 
-@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("with_velocity", [True, False])
 @pytest.mark.parametrize(("kind", "hz"), BACK_STEPS)
 def test_a_sample_beside_its_track_has_no_place_and_its_neighbours_no_speed_from_it(
-    kind: str, hz: float, told: bool
+    kind: str, hz: float, with_velocity: bool
 ) -> None:
-    for who in ("ego", "x"):
-        scenery, k = scene(kind, hz, who, told=told)
-        assert [i for i, row in enumerate(states(scenery.trace, who)) if row["x_m"] is None] == [k]
-        assert not wrong_speeds(scenery.trace, who)
+    for actor_id in ("ego", "x"):
+        scenery, k = scene(kind, hz, actor_id, with_velocity=with_velocity)
+        assert [i for i, row in enumerate(states(scenery.trace, actor_id)) if row["x_m"] is None] == [k]
+        assert not wrong_speeds(scenery.trace, actor_id)
         assert teleports(scenery.trace) == [1]
 
 
-@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("with_velocity", [True, False])
 @pytest.mark.parametrize("hz", [2, 10, 20])
 @pytest.mark.parametrize("kind", ["jump5", "jump60", "stay5", "stay60", "zero"])
-def test_a_jump_has_no_place_and_no_speed(kind: str, hz: float, told: bool) -> None:
-    for who in ("ego", "x"):
-        scenery, k = scene(kind, hz, who, told=told)
-        found = states(scenery.trace, who)
+def test_a_jump_has_no_place_and_no_speed(kind: str, hz: float, with_velocity: bool) -> None:
+    for actor_id in ("ego", "x"):
+        scenery, k = scene(kind, hz, actor_id, with_velocity=with_velocity)
+        found = states(scenery.trace, actor_id)
         assert found[k]["x_m"] is None
-        assert not wrong_speeds(scenery.trace, who)
+        assert not wrong_speeds(scenery.trace, actor_id)
         said = {row["check_id"] for row in scenery.trace.tables["quality"].to_pylist()}
         assert said & {"teleport", "motion_unknown"}
 
@@ -111,18 +111,18 @@ def test_a_jump_has_no_place_and_no_speed(kind: str, hz: float, told: bool) -> N
 @pytest.mark.parametrize(("hz", "far"), [(10, 0.5), (10, 2.0), (20, 0.3)])
 def test_a_small_step_of_a_track_for_good_gives_no_speed(hz: float, far: float) -> None:
     """Where velocities are recorded it is what maps and filters do, and nothing hangs on it."""
-    scenery, k = scene(f"stay{far}", hz, "x", told=False)
+    scenery, k = scene(f"stay{far}", hz, "x", with_velocity=False)
     assert [i for i, row in enumerate(states(scenery.trace, "x")) if row["x_m"] is None] == [k - 1, k]
     assert not wrong_speeds(scenery.trace, "x")
     if far < 1.0:
-        told, _ = scene(f"stay{far}", hz, "x", told=True)
-        assert not teleports(told.trace)
+        scenery, _ = scene(f"stay{far}", hz, "x", with_velocity=True)
+        assert not teleports(scenery.trace)
 
 
 @pytest.mark.parametrize("kind", ["none0", "back1", "back2", "stay2"])
 def test_noise_hides_no_back_step_and_is_none(kind: str) -> None:
     """With 5 cm of noise; the filter goes on over the one sample that has no place."""
-    scenery, k = scene(kind.replace("none", "jump"), 10, "x", told=False, noise_m=0.05)
+    scenery, k = scene(kind.replace("none", "jump"), 10, "x", with_velocity=False, noise_m=0.05)
     lost = [i for i, row in enumerate(states(scenery.trace, "x")) if row["x_m"] is None]
     assert lost == {"n": [], "b": [k], "s": [k - 1, k]}[kind[0]]
     assert not wrong_speeds(scenery.trace, "x")
@@ -145,8 +145,8 @@ def test_noise_and_hard_manoeuvres_are_on_their_track() -> None:
         assert not teleports(ingested(drive(each, WAY.environment)).trace)
 
 
-@pytest.mark.parametrize("told", [True, False])
-def test_an_impact_is_no_back_step(told: bool) -> None:
+@pytest.mark.parametrize("with_velocity", [True, False])
+def test_an_impact_is_no_back_step(with_velocity: bool) -> None:
     """From one sample to the next the ego is struck: it has another speed from there on, and for one sample more of it.
 
     The last is a standing vehicle of cav_loop into which somebody walks.
@@ -155,7 +155,7 @@ def test_an_impact_is_no_back_step(told: bool) -> None:
     for speeds in ((10.0, 2.0, 2.0), (0.0, 5.0, 3.0), (10.0, -2.0, 0.0), (0.4, 4.6, 2.6)):
         v = np.select([t < 4.95, t < 5.05], speeds[:2], speeds[2])
         x = 200 + np.r_[0.0, np.cumsum(v[:-1]) * 0.1]
-        struck: Actor = replace(moving("ego", WAY, t, x, WAY.own), vx=v if told else np.full(len(t), np.nan))
+        struck: Actor = replace(moving("ego", WAY, t, x, WAY.own), vx=v if with_velocity else np.full(len(t), np.nan))
         struck = replace(struck, vy=struck.vx * 0.0, yaw=np.zeros(len(t)))
         trace = ingested(drive([struck], WAY.environment)).trace
         assert all(row["x_m"] is not None for row in states(trace, "ego"))
@@ -170,8 +170,10 @@ def test_no_finding_comes_of_a_jump() -> None:
         ("back0.5", 20),
         ("jump60", 2),
     ]
-    drives = [scene(kind, hz, who, told=False)[0] for kind, hz in grid for who in ("ego", "x")]
-    drives += [scene(kind, 10, who, told=True)[0] for kind in ("side0.5", "jump20") for who in ("ego", "x")]
+    drives = [scene(kind, hz, actor_id, with_velocity=False)[0] for kind, hz in grid for actor_id in ("ego", "x")]
+    drives += [
+        scene(kind, 10, actor_id, with_velocity=True)[0] for kind in ("side0.5", "jump20") for actor_id in ("ego", "x")
+    ]
     found = judged(drives, rules=RULES)
     assert not [(row["drive_id"], row["rule_id"], row["reason"]) for row in found if row["verdict"] == "fail"]
     # and each says why it does not know
@@ -181,15 +183,15 @@ def test_no_finding_comes_of_a_jump() -> None:
     assert {one.trace.drive_id for one in drives if teleports(one.trace)} <= unknown
 
 
-@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("with_velocity", [True, False])
 @pytest.mark.parametrize("piece_rows", [1, 7, 100])
-def test_pieces_do_not_decide(piece_rows: int, monkeypatch: pytest.MonkeyPatch, *, told: bool) -> None:
+def test_pieces_do_not_decide(piece_rows: int, monkeypatch: pytest.MonkeyPatch, *, with_velocity: bool) -> None:
     """A long drive is looked at in pieces: a sample at the edge of one is as in the middle."""
     rng = np.random.default_rng(7)
     t_ns = np.tile(np.arange(150) * 100_000_000, 2)
     x = t_ns * 1e-8 + np.where(rng.random(300) < 0.1, rng.normal(0, 2.0, 300), 0.0)
     y = np.where(rng.random(300) < 0.02, np.nan, 0.0)
-    speed = np.full(300, 10.0 if told else np.nan)
+    speed = np.full(300, 10.0 if with_velocity else np.nan)
     numbers = {"x_m": x, "y_m": y, "vx_mps": speed, "vy_mps": 0 * speed}
     states = States(["a", "b"], np.repeat([0, 1], 150).astype(np.int32), t_ns, numbers, {}, np.zeros(300, np.bool_))
     usual = outliers.outlier_samples(states, steps(states))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TRUCK: dict[str, Any] = {"actor_class": "truck", "length_m": 12.0, "width_m": 2.5}
 
 
-def moved(columns: dict[str, Any], x: float = 0.0, y: float = 0.0, rows: slice = slice(None)) -> dict[str, Any]:
+def shift(columns: dict[str, Any], x: float = 0.0, y: float = 0.0, rows: slice = slice(None)) -> dict[str, Any]:
     """Return the rows of a track, moved by some metres."""
     cut = {name: values[rows] if isinstance(values, np.ndarray) else values for name, values in columns.items()}
     return cut | {"x_m": cut["x_m"] + x, "y_m": cut["y_m"] + y}
@@ -28,7 +28,7 @@ def moved(columns: dict[str, Any], x: float = 0.0, y: float = 0.0, rows: slice =
 
 @pytest.mark.parametrize("rows", [slice(None), slice(0, 60), slice(40, None)])
 def test_a_truck_that_is_tracked_twice(tmp_path: Path, rows: slice) -> None:
-    second = moved(track(**TRUCK), 1.5, 0.3, rows) | {"length_m": 8.0}
+    second = shift(track(**TRUCK), 1.5, 0.3, rows) | {"length_m": 8.0}
     trace = drive(tmp_path, a=track(**TRUCK), b=second)
     # of two tracks of one length, the first id counts
     assert doubts(trace) == {("b", "identity", "same_body")}
@@ -38,7 +38,7 @@ def test_a_truck_that_is_tracked_twice(tmp_path: Path, rows: slice) -> None:
 
 def test_a_rider_on_a_bicycle(tmp_path: Path) -> None:
     bicycle = track(5.0, actor_class="bicycle", length_m=1.8, width_m=0.6)
-    rider = moved(track(5.0, actor_class="bicycle", length_m=0.9, width_m=0.6), 0.1)
+    rider = shift(track(5.0, actor_class="bicycle", length_m=0.9, width_m=0.6), 0.1)
     assert doubts(drive(tmp_path, rider=rider, wheels=bicycle)) == {("wheels", "identity", "same_body")}
 
 
@@ -49,7 +49,7 @@ def test_the_ego_is_believed(tmp_path: Path) -> None:
 
 
 def test_vehicles_side_by_side_or_in_a_queue_are_two(tmp_path: Path) -> None:
-    cars = {"a": track(), "b": moved(track(), y=1.9), "c": moved(track(), x=4.4)}
+    cars = {"a": track(), "b": shift(track(), y=1.9), "c": shift(track(), x=4.4)}
     assert not doubts(drive(tmp_path, **cars))
 
 
@@ -74,14 +74,14 @@ def in_line(gap: float, closing: float, speed: float = 8.0) -> dict[str, dict[st
 
 
 @pytest.mark.parametrize(
-    ("gap", "closing", "speed", "one"),
+    ("gap", "closing", "speed", "is_one_body"),
     [(1.5, 0.8, 8.0, True), (1.5, 0.3, 8.0, False), (3.0, 1.4, 8.0, False), (1.5, 0.8, 3.0, False)],
 )
 def test_who_is_nearer_than_anybody_follows_and_sinks_in_is_one_body(
-    tmp_path: Path, *, gap: float, closing: float, speed: float, one: bool
+    tmp_path: Path, *, gap: float, closing: float, speed: float, is_one_body: bool
 ) -> None:
     found = doubts(drive(tmp_path, **in_line(gap, closing, speed)))
-    assert (("rear", "identity", "same_body") in found) is one
+    assert (("rear", "identity", "same_body") in found) is is_one_body
 
 
 def begun(depth: float, *, closing: float = -1.5, hit: float = 0.0, speed: float = 8.0) -> dict[str, dict[str, Any]]:
@@ -142,7 +142,7 @@ def test_two_persons_in_one_place_are_not_exact(
     tmp_path: Path, apart: tuple[float, ...], longest_m: float, doubted: set[str]
 ) -> None:
     first = track(0.8, actor_class="pedestrian", length_m=longest_m, width_m=0.5)
-    second = moved(track(0.8, actor_class="pedestrian", length_m=0.5, width_m=0.5), apart[0], apart[1])
+    second = shift(track(0.8, actor_class="pedestrian", length_m=0.5, width_m=0.5), apart[0], apart[1])
     for speed in apart[2:]:
         second["x_m"] = second["x_m"] + speed * np.arange(len(second["x_m"])) / 10.0
     trace = drive(tmp_path, a=first, b=second)
@@ -157,7 +157,7 @@ def test_who_collides_after_the_begin_is_not_doubted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("until", "arrives", "brakes", "held"),
+    ("until", "arrives", "brakes", "is_held"),
     [
         (50, 51, False, True),
         (50, 66, False, False),
@@ -167,16 +167,16 @@ def test_who_collides_after_the_begin_is_not_doubted(tmp_path: Path) -> None:
     ],
 )
 def test_who_stands_at_its_end_where_another_one_is_at_once_was_gone(
-    tmp_path: Path, *, until: int, arrives: int, brakes: bool, held: bool
+    tmp_path: Path, *, until: int, arrives: int, brakes: bool, is_held: bool
 ) -> None:
     stands = track(0.0) | {"x_m": np.full(100, 60.0)}
     goes = track(6.0)
     goes["x_m"] = goes["x_m"] + 60.0 - 4.5 - 0.6 * (arrives - 1)
     goes["vx_mps"][51:] = 3.0 if brakes else 6.0
     goes["x_m"][51:] = goes["x_m"][50] + np.arange(1, 50) * goes["vx_mps"][-1] / 10.0
-    trace = drive(tmp_path, stands=moved(stands, rows=slice(0, until)), goes=goes)
+    trace = drive(tmp_path, stands=shift(stands, rows=slice(0, until)), goes=goes)
     found = {row for row in doubts(trace) if row[2] == "held_track"}
-    assert found == ({("stands", "existence", "held_track")} if held else set())
+    assert found == ({("stands", "existence", "held_track")} if is_held else set())
 
 
 def test_a_track_that_begins_elsewhere(tmp_path: Path) -> None:

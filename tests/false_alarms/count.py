@@ -63,7 +63,7 @@ def simulated(name: str, folder: Path, pieces: int, seconds: int) -> Count:
     for seed in range(1, pieces + 1):
         files = drive(folder / f"log{seed}", seconds=seconds, seed=seed)
         options = ("--mapping", str(files.routes), "--handedness", hand)
-        counts.append(_checked(name, folder / f"out{seed}", str(files.log), str(files.map), *options))
+        counts.append(_count_alarms(name, folder / f"out{seed}", str(files.log), str(files.map), *options))
     return together(name, counts)
 
 
@@ -81,10 +81,12 @@ def real(folder: Path) -> Iterator[Count]:
     """Check every log of `REAL` that is there, every vehicle as ego."""
     for number, (name, (log, road, options)) in enumerate(REAL.items()):
         if (DATA / log).exists():
-            yield _checked(name, folder / str(number), str(DATA / log), str(DATA / road) if road else None, *options)
+            yield _count_alarms(
+                name, folder / str(number), str(DATA / log), str(DATA / road) if road else None, *options
+            )
 
 
-def _checked(name: str, out: Path, log: str, road: str | None, *options: str) -> Count:
+def _count_alarms(name: str, out: Path, log: str, road: str | None, *options: str) -> Count:
     command = [sys.executable, "-m", "drivelint", "check", log, *(("--map", road) if road else ()), *options]
     command += ["--rules", "all", "--ego", "all", "--fail-on", "never", "--no-annotate", "--quiet", "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ)

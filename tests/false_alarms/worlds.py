@@ -55,7 +55,7 @@ def motorway(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = Mappin
     (folder / "road.xodr").write_text(xodr, "utf-8")
     rng = np.random.default_rng(seed)
     pick = rng.choice(len(_WAYS), size=count(seconds, 500), p=list(_WAYS.values()))
-    return driven(folder, [list(_WAYS)[k] for k in pick], seconds, rng, seed, kinds)
+    return drive_ways(folder, [list(_WAYS)[k] for k in pick], seconds, rng, seed, kinds)
 
 
 def town(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = MappingProxyType(KINDS)) -> Files:
@@ -75,7 +75,7 @@ def town(folder: Path, *, seconds: int, seed: int = 1, kinds: Kinds = MappingPro
     for _ in range(count(seconds, 900)):
         (a, at), (b, to) = (ends[k] for k in rng.choice(len(ends), size=2, replace=False))
         ways.append((a + at, to + b))
-    return driven(folder, ways, seconds, rng, seed, kinds)
+    return drive_ways(folder, ways, seconds, rng, seed, kinds)
 
 
 def rural(folder: Path, *, seconds: int, seed: int = 1) -> Files:
@@ -87,7 +87,7 @@ def count(seconds: int, per_hour: int) -> int:
     return round(seconds * per_hour / 3600)
 
 
-def driven(  # noqa: PLR0917
+def drive_ways(  # noqa: PLR0917
     folder: Path, ways: Sequence[tuple[str, str]], seconds: int, rng: np.random.Generator, seed: int, kinds: Kinds
 ) -> Files:
     """Drive these ways, each from its first edge to its last, on the net `road.net.xml` of `folder`."""

@@ -31,7 +31,7 @@ class BadLog(NamedTuple):
     fault: int
     format: str
     exit_code: int
-    told: str
+    phrase: str
     damage: Damage | None = None
     frames: Spoil | None = None
     rewrite: Callable[[Path], None] | None = None

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.ci
 RULES = "ukhc.no-collision"
 
 
-def checked(*logs: Path, **options: Any) -> drivelint.CheckResult:
+def check_result(*logs: Path, **options: Any) -> drivelint.CheckResult:
     return drivelint.check(logs, rules=RULES, ego="0", annotate=False, robustness=False, **options)
 
 
@@ -26,7 +26,7 @@ def checked(*logs: Path, **options: Any) -> drivelint.CheckResult:
 def sound(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[dict[str, Any]]]:
     """Return a sound log and its verdicts when it is checked alone."""
     log = drives.osi_mcap(tmp_path_factory.mktemp("sound") / "sound", drives.drive(drives.N + 1))
-    alone = checked(log)
+    alone = check_result(log)
     rows: list[dict[str, Any]] = alone.verdicts.arrow().to_pylist()
     assert (alone.exit_code, [row["verdict"] for row in rows]) == (0, ["pass", "pass"])
     return log, rows
@@ -35,7 +35,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[dict[str
 @pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize("names", [[name for name in drives.WRITERS if name != "csv"], ["csv"]], ids=["most", "csv"])
 def test_the_drive_is_sound_in_every_format(names: list[str], tmp_path: Path) -> None:
-    result = checked(
+    result = check_result(
         *(drives.WRITERS[name](tmp_path / name, drives.drive()) for name in names), **mapping(names[-1], tmp_path)
     )
     rows = result.drives.arrow().to_pylist()
@@ -60,7 +60,7 @@ def assert_told(bad: BadLog, name: str, result: drivelint.CheckResult) -> None:
     """The log of that name is judged, or not, with what its fault leaves, and the user is told."""
     (drive,) = (row for row in result.drives.arrow().to_pylist() if row["file_name"].partition(".")[0] == name)
     told = (drive["status_reason"] or "") + "".join(f["message"] for f in drive["quality"])
-    assert bad.told in told
+    assert bad.phrase in told
     assert "internal error" not in told
     assert told.count("the log is damaged or cut off") <= 1
     assert drive["status"] == ("not_judged" if bad.exit_code == 4 else "judged")
@@ -80,7 +80,7 @@ def of_sound(result: drivelint.CheckResult) -> list[dict[str, Any]]:
 def test_a_bad_log(bad: BadLog, tmp_path: Path, sound: tuple[Path, list[dict[str, Any]]]) -> None:
     good, alone = sound
     (tmp_path / "in").mkdir()
-    result = checked(bad.write(tmp_path / "in"), good, **mapping(bad.format, tmp_path))
+    result = check_result(bad.write(tmp_path / "in"), good, **mapping(bad.format, tmp_path))
     assert result.exit_code == bad.exit_code
     assert_told(bad, "bad", result)
     assert of_sound(result) == alone
@@ -93,7 +93,7 @@ def together(tmp_path_factory: pytest.TempPathFactory, sound: tuple[Path, list[d
     found: dict[str, Any] = {}
     for names in ({bad.format for bad in BAD_LOGS} - {"csv"}, {"csv"}):
         logs = [bad.write(folder, f"bad{no:02}") for no, bad in enumerate(BAD_LOGS) if bad.format in names]
-        result = checked(*logs, sound[0], **mapping("csv" if "csv" in names else "", folder))
+        result = check_result(*logs, sound[0], **mapping("csv" if "csv" in names else "", folder))
         found |= dict.fromkeys(names, result)
     return found
 

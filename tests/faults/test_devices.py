@@ -70,7 +70,7 @@ def test_it_is_no_log_no_map_no_mapping_and_no_file_of_waivers(place: Path) -> N
 
 @pytest.mark.timeout(60)
 def test_a_part_of_a_drive_that_is_a_pipe_is_not_there(tmp_path: Path) -> None:
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     (folder / "actor.parquet").unlink()
     os.mkfifo(folder / "actor.parquet")
     with pytest.raises(TraceError, match=r"actor\.parquet|no ego"):
@@ -104,13 +104,13 @@ def test_what_does_not_fit_ends_the_run_where_a_limit_is_set(monkeypatch: pytest
     assert "ulimit -v" in str(error)
 
 
-@pytest.mark.parametrize(("said", "kept"), [("0", None), ("00", None), ("", None), ("80", "80")])
+@pytest.mark.parametrize(("columns", "expected"), [("0", None), ("00", None), ("", None), ("80", "80")])
 def test_a_terminal_without_columns_is_one_of_unknown_width(
-    said: str, kept: str | None, monkeypatch: pytest.MonkeyPatch
+    columns: str, expected: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("COLUMNS", said)
+    monkeypatch.setenv("COLUMNS", columns)
     streams.make_stdout_and_stderr_writable()
-    assert os.environ.get("COLUMNS") == kept
+    assert os.environ.get("COLUMNS") == expected
 
 
 def command(*args: str) -> list[str]:

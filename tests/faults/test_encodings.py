@@ -52,7 +52,7 @@ def ros(path: Path, *, second: bool) -> Path:
 
 
 LOGS = {"osi": osi, "foxglove": foxglove, "ros": ros}
-CHOSEN = {"osi": "ground_truth", "foxglove": "/scene", "ros": "/carla/hero/odometry"}
+TOPICS = {"osi": "ground_truth", "foxglove": "/scene", "ros": "/carla/hero/odometry"}
 
 
 def in_another_encoding(path: Path) -> Path:
@@ -78,7 +78,9 @@ def good(tmp_path: Path) -> Path:
     return drives.osi_mcap(tmp_path / "good", drives.drive(drives.N + 1))
 
 
-def checked(logs: list[Path], name: str, **options: Any) -> tuple[int, dict[str, dict[str, Any]], dict[str, set[str]]]:
+def check_outcome(
+    logs: list[Path], name: str, **options: Any
+) -> tuple[int, dict[str, dict[str, Any]], dict[str, set[str]]]:
     """Return the exit code, the rows of the drives by file, and the verdicts of each rule on the bad one."""
     if name != "ros":
         options["ego"] = "0"
@@ -100,11 +102,11 @@ def checked(logs: list[Path], name: str, **options: Any) -> tuple[int, dict[str,
 def test_a_topic_of_road_users_refuses_the_log(name: str, tmp_path: Path, good: Path) -> None:
     """Each topic may hold whom the other does not."""
     log = in_another_encoding(LOGS[name](tmp_path / "whole.mcap", second=True))
-    code, found, _ = checked([log, good], name)
+    code, found, _ = check_outcome([log, good], name)
     assert code == 4
     assert "(40 messages of " in found["bad.mcap"]["status_reason"]
     assert "is in 'xcdr', which is not read: its actors are unknown" in found["bad.mcap"]["status_reason"]
-    assert found["bad.mcap"]["status_reason"].endswith(f"--topic {CHOSEN[name]}")
+    assert found["bad.mcap"]["status_reason"].endswith(f"--topic {TOPICS[name]}")
     assert found["good.mcap"]["status"] == "judged"
 
 
@@ -112,7 +114,7 @@ def test_a_topic_of_road_users_refuses_the_log(name: str, tmp_path: Path, good: 
 @pytest.mark.parametrize("name", LOGS)
 def test_a_topic_may_be_chosen(name: str, tmp_path: Path) -> None:
     log = in_another_encoding(LOGS[name](tmp_path / "whole.mcap", second=True))
-    code, found, verdicts = checked([log], name, topic=CHOSEN[name])
+    code, found, verdicts = check_outcome([log], name, topic=TOPICS[name])
     alone = {"missing_road_users"} if name == "ros" else {"not_triggered"}  # who chooses a topic says who is there
     assert (code, found["bad.mcap"]["lossy"]) == (4 if name == "ros" else 0, False)  # 4: nothing is decided
     assert verdicts["ukhc.no-collision"] == alone
@@ -123,7 +125,7 @@ def test_a_topic_may_be_chosen(name: str, tmp_path: Path) -> None:
 def test_another_topic_is_passed_over(name: str, tmp_path: Path, good: Path) -> None:
     """What it would say is unknown, the rest is judged, and the exit code tells that something is lost."""
     log = in_another_encoding(LOGS[name](tmp_path / "whole.mcap", second=False))
-    code, found, verdicts = checked([log, good], name)
+    code, found, verdicts = check_outcome([log, good], name)
     assert (code, found["bad.mcap"]["lossy"], found["good.mcap"]["lossy"]) == (3, True, False)
     (told,) = (each for each in found["bad.mcap"]["quality"] if each["check_id"] == "unread_topic")
     assert told["message"].endswith("is in 'xcdr', which is not read: its content is unknown")
@@ -134,7 +136,7 @@ def test_another_topic_is_passed_over(name: str, tmp_path: Path, good: Path) -> 
 
 def test_without_road_users_nobody_is_claimed_absent(tmp_path: Path) -> None:
     log = ros_log.write(tmp_path / "bad.mcap", [*ODOMETRY, *LIGHTS])
-    _, found, verdicts = checked([log], "ros")
+    _, found, verdicts = check_outcome([log], "ros")
     assert verdicts["ukhc.no-collision"] == {"missing_road_users"}
     assert "missing_road_users" not in verdicts["ukhc.r116.hazards"] | verdicts["ukhc.r124.speed-limit"]
     assert "no_road_users" in {each["check_id"] for each in found["bad.mcap"]["quality"]}

@@ -45,8 +45,8 @@ def flipped(folder: Path, _: Path) -> None:
     (folder / "verdicts.parquet").write_bytes(data)
 
 
-def of_another_run(folder: Path, other: Path) -> None:
-    shutil.copy(other / "verdicts.parquet", folder / "verdicts.parquet")
+def of_another_run(folder: Path, other_run: Path) -> None:
+    shutil.copy(other_run / "verdicts.parquet", folder / "verdicts.parquet")
 
 
 def other_summary(folder: Path, _: Path) -> None:

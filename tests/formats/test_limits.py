@@ -30,14 +30,14 @@ def growing(*_: Any) -> None:
         kept.append(bytearray(b"1" * 2**20))
 
 
-@pytest.mark.parametrize(("read", "why"), [(for_ever, "0 s of computing"), (growing, "64 MiB of memory")])
+@pytest.mark.parametrize(("reader", "why"), [(for_ever, "0 s of computing"), (growing, "64 MiB of memory")])
 def test_reading_that_takes_too_much_is_a_sentence(
-    read: Callable[..., None], why: str, monkeypatch: pytest.MonkeyPatch
+    reader: Callable[..., None], why: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(limits, "BASE_CPU_S", 0.2 if read is for_ever else 60.0)
-    monkeypatch.setattr(limits, "BASE_MEMORY_BYTES", 64 << 20 if read is growing else 2 << 30)
+    monkeypatch.setattr(limits, "BASE_CPU_S", 0.2 if reader is for_ever else 60.0)
+    monkeypatch.setattr(limits, "BASE_MEMORY_BYTES", 64 << 20 if reader is growing else 2 << 30)
     with pytest.raises(TraceError, match=f"^log: reading took more than {why}, too much for a file of 5 bytes"):
-        limits.read_within_limits(read, "log", 5, TraceError)
+        limits.read_within_limits(reader, "log", 5, TraceError)
 
 
 def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def refused(content: bytes | str) -> str:
+def refusal(content: bytes | str) -> str:
     content = content.encode() if isinstance(content, str) else content
     with pytest.raises(MapError) as error:
         load_map(MapSource("some.xodr", content))
@@ -59,15 +59,15 @@ def test_a_file_name_is_exactly_that_file(tmp_path: Path) -> None:
     ],
 )
 def test_other_formats_are_told_what_they_look_like(content: bytes | str, says: str) -> None:
-    message = refused(content)
+    message = refusal(content)
     assert says in message
     assert "OpenDRIVE" in message
 
 
 def test_malformed_and_truncated_xml() -> None:
-    assert "not well-formed" in refused("<OpenDRIVE><road></OpenDRIVE>")
-    assert "not well-formed" in refused(xodr()[:-40])
-    assert "not well-formed" in refused("<OpenDRIVE>" + "<a>" * 100_000)
+    assert "not well-formed" in refusal("<OpenDRIVE><road></OpenDRIVE>")
+    assert "not well-formed" in refusal(xodr()[:-40])
+    assert "not well-formed" in refusal("<OpenDRIVE>" + "<a>" * 100_000)
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_malformed_and_truncated_xml() -> None:
 )
 def test_a_doctype_is_refused(doctype: str) -> None:
     body = xodr().replace("<OpenDRIVE>", "<OpenDRIVE>&b;" if "ENTITY b" in doctype else "<OpenDRIVE>")
-    assert "DOCTYPE" in refused(doctype + body)
+    assert "DOCTYPE" in refusal(doctype + body)
 
 
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,12 +90,12 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, m
     (tmp_path / "some.xodr").write_text(xodr())
     with pytest.raises(MapError, match="but at most 100 are read"):
         read_source(tmp_path / "some.xodr")
-    assert "at most 100 are read" in refused(xodr())
+    assert "at most 100 are read" in refusal(xodr())
 
 
 def test_a_map_without_a_lane_says_why() -> None:
-    assert "no roads" in refused("<OpenDRIVE/>")
-    assert "<geometry>" in refused(xodr(road(geometry="<a/>")))
+    assert "no roads" in refusal("<OpenDRIVE/>")
+    assert "<geometry>" in refusal(xodr(road(geometry="<a/>")))
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_options_without_a_meaning() -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "printed"),
+    ("offset", "offset_text"),
     [
         ((0, 0), ""),
         ((-0.0, 0.0), ""),
@@ -174,10 +174,10 @@ def test_options_without_a_meaning() -> None:
         ((1e-7, 0), "+1e-07+0.0"),
     ],
 )
-def test_environment_ids_are_the_same_everywhere(offset: tuple[float, float], printed: str) -> None:
+def test_environment_ids_are_the_same_everywhere(offset: tuple[float, float], offset_text: str) -> None:
     environment = load(road(), offset=offset, handedness="lht")
     digest = MapSource("small.xodr", xodr(road()).encode()).sha256[:8]
-    assert environment.environment_id == f"small-{digest}{printed}@lht"
+    assert environment.environment_id == f"small-{digest}{offset_text}@lht"
     row = rows(environment, "environment")[0]
     assert (row["offset_x_m"], row["offset_y_m"]) == pytest.approx(offset)
     assert (row["format"], row["name"], row["sha256"][:8]) == ("opendrive", "small.xodr", digest)

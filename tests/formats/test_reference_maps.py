@@ -57,7 +57,7 @@ def read(file: str) -> MapTables:
 
 
 @cache
-def placed(file: str) -> dict[str, list[dict[str, Any]]]:
+def lane_points(file: str) -> dict[str, list[dict[str, Any]]]:
     return points(read(file))
 
 
@@ -82,7 +82,7 @@ def test_tables_are_those_of_the_schema_and_finite(file: str) -> None:
         assert set(table.column("environment_id").to_pylist()) <= {environment.environment_id}
         for row in table.to_pylist():
             assert all(math.isfinite(v) for v in row.values() if isinstance(v, float))
-    for line in placed(file).values():
+    for line in lane_points(file).values():
         assert [p["k"] for p in line] == list(range(len(line)))
         assert len(line) >= 2
         assert all(b["s_m"] > a["s_m"] for a, b in pairwise(line))
@@ -93,7 +93,7 @@ def test_bounds_agree_with_a_naive_reading(file: str) -> None:
     naive = NaiveMap(shared(file))
     lanes = lanelets(read(file))
     worst = 0.0
-    for name, line in placed(file).items():
+    for name, line in lane_points(file).items():
         road, section, lane = (lanes[name][k] for k in ("road_id", "section", "lane_no"))
         start, end = naive.sections(road)[section]
         for p in {id(q): q for q in (line[0], line[len(line) // 3], line[len(line) // 2], line[-1])}.values():
@@ -123,7 +123,7 @@ def test_areas_agree_with_polygons_of_naive_edges(file: str) -> None:
 def test_directions_follow_the_side_of_the_road(file: str) -> None:
     keep = 1 if read(file).handedness == "rht" else -1
     for name, lane in lanelets(read(file)).items():
-        line = placed(file)[name]
+        line = lane_points(file)[name]
         expected = keep if lane["lane_no"] < 0 else -keep
         assert lane["along_road"] == expected
         assert (line[-1]["road_s_m"] - line[0]["road_s_m"]) * expected > 0
@@ -137,7 +137,7 @@ def test_directions_follow_the_side_of_the_road(file: str) -> None:
 def test_links_are_exactly_the_lanes_that_touch(file: str) -> None:
     """An independent reading of the whole lane graph: what ends where another begins, in the same direction."""
     lanes = lanelets(read(file))
-    ends = {name: (line[0], line[-1]) for name, line in placed(file).items() if lanes[name]["drivable"]}
+    ends = {name: (line[0], line[-1]) for name, line in lane_points(file).items() if lanes[name]["drivable"]}
     touching = {
         (a, b)
         for a, (_, last) in ends.items()
@@ -166,7 +166,7 @@ def test_neighbours_share_an_edge_and_know_each_other(file: str) -> None:
             assert against == (lanes[other]["along_road"] != lane["along_road"])
             back = side if against else {"left": "right", "right": "left"}[side]
             assert lanes[other][f"{back}_id"] == name
-            mine, theirs = placed(file)[name][0], placed(file)[other][-1 if against else 0]
+            mine, theirs = lane_points(file)[name][0], lane_points(file)[other][-1 if against else 0]
             gap = math.dist(*((p[f"{s}_x_m"], p[f"{s}_y_m"]) for p, s in ((mine, side), (theirs, back))))
             assert gap < 0.06  # a narrow lane between them was left out
 
@@ -241,7 +241,7 @@ def test_town_stop_lines_lie_across_lanes_before_the_junction() -> None:
     drawn = {row["object_id"] for row in rows(town, "road_object") if row["kind"] == "stop_line"}
     assert {row["stop_line_id"] for row in lines} == drawn
     for row in lines:
-        line = placed("maps/Town10HD.xodr")[row["lanelet_id"]]
+        line = lane_points("maps/Town10HD.xodr")[row["lanelet_id"]]
         p = min(line, key=lambda q: abs(q["s_m"] - row["lane_s_m"]))
         outline = next(o for o in rows(town, "road_object") if o["object_id"] == row["stop_line_id"])
         d = min(

@@ -27,12 +27,12 @@ JOBS_PER_ROUND = 10
 """So many jobs of one kind follow each other: a run that is ended early has tried all kinds."""
 
 
-def jobs(n: int, kinds: Sequence[str], seed: int, *, judged: bool = True, first: int = 0) -> Iterator[Job]:
+def jobs(n: int, kinds: Sequence[str], seed: int, *, is_judged: bool = True, first: int = 0) -> Iterator[Job]:
     """Share `n` cases out among the kinds, in jobs whose readable files are judged together."""
     of_kind = []
     for i, kind in enumerate(kinds):
         last = first + (n * (i + 1)) // len(kinds) - (n * i) // len(kinds)
-        of_kind.append([Job(kind, seed, at, min(PER_JOB, last - at), judged) for at in range(first, last, PER_JOB)])
+        of_kind.append([Job(kind, seed, at, min(PER_JOB, last - at), is_judged) for at in range(first, last, PER_JOB)])
     for start in range(0, max(map(len, of_kind)), JOBS_PER_ROUND):
         for some in of_kind:
             yield from some[start : start + JOBS_PER_ROUND]
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     kinds = options.only or KINDS
     if options.at is None:
-        work = list(jobs(options.n, kinds, options.seed, judged=not options.read_only, first=options.first))
+        work = list(jobs(options.n, kinds, options.seed, is_judged=not options.read_only, first=options.first))
     elif len(kinds) == 1:
         work = [Job(kinds[0], options.seed, options.at, 1, not options.read_only, options.save)]
     else:
@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for i, job in enumerate(work, 1):
             if job in ended:
                 continue
-            of_job = list(_shown(driver.run(job), everything=options.at is not None))
+            of_job = list(_print_outcomes(driver.run(job), print_all=options.at is not None))
             outcomes += of_job
             if options.log:
                 with options.log.open("a", encoding="utf-8") as file:
@@ -113,10 +113,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return int(any(each.outcome in BAD for each in outcomes))
 
 
-def _shown(outcomes: Iterator[Outcome], *, everything: bool) -> Iterator[Outcome]:
+def _print_outcomes(outcomes: Iterator[Outcome], *, print_all: bool) -> Iterator[Outcome]:
     """Print outcomes that show a bug, or all, as they come."""
     for each in outcomes:
-        if everything or each.outcome in BAD:
+        if print_all or each.outcome in BAD:
             print(*each, sep=" | ", flush=True)
         yield each
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, Self
 from drivelint.audit.executors.local import processor_seconds
 from drivelint.computing import resident_bytes
 from tests.fuzz.outcome import Outcome
-from tests.fuzz.sources import removed, scratch
+from tests.fuzz.sources import remove_folder, scratch
 from tests.fuzz.worker import Job, serve
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class Driver:
 
     def __exit__(self, *_: object) -> None:
         self._stop()
-        removed(self._home)
+        remove_folder(self._home)
 
     def run(self, job: Job) -> Iterator[Outcome]:
         """Yield an outcome per case, and a second one for a case that judging found to be worse."""

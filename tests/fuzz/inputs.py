@@ -58,9 +58,9 @@ class Input:
         text = not name.endswith(".parquet")
         return {name: mutated(self.files[name], rng, self.ways if text else BINARY)}
 
-    def written(self, folder: Path, changed: dict[str, bytes] | None = None) -> Path:
+    def write(self, folder: Path, changes: dict[str, bytes] | None = None) -> Path:
         """Write the files, some of them changed, and return their folder."""
-        for name, data in {**self.files, **(changed or {})}.items():
+        for name, data in {**self.files, **(changes or {})}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
         return folder
@@ -119,7 +119,7 @@ def mapping(folder: Path) -> list[Input]:
     """Return mapping files, which are used to read their tables."""
     found = []
     for source in sources.csv(folder):
-        whole, path = source.written(folder / f"of-{source.name}"), source.options["mapping"]
+        whole, path = source.write(folder / f"of-{source.name}"), source.options["mapping"]
 
         def use(place: Path, _: int, table: Path = whole) -> Any:
             trace = read_trace(table, IngestOptions(mapping=str(place / "mapping.toml"), need_ego=False))
@@ -131,7 +131,7 @@ def mapping(folder: Path) -> list[Input]:
 
 def rule(folder: Path) -> list[Input]:
     """Return rule files, some of which are run where they are still accepted."""
-    drive = sources.osi_mcap(folder)[0].written(folder / "drive")
+    drive = sources.osi_mcap(folder)[0].write(folder / "drive")
 
     def use(place: Path, number: int) -> Any:
         found = read_rule(place / "fuzz" / "rule.sql")
@@ -149,7 +149,7 @@ def rule(folder: Path) -> list[Input]:
 
 def waiver(folder: Path) -> list[Input]:
     """Return a file of waivers, applied to a result with findings."""
-    result = load_result(_checked(folder))
+    result = load_result(_result_folder(folder))
 
     def use(place: Path, _: int) -> Any:
         said = waivers.read(place / "waivers.toml")
@@ -160,7 +160,7 @@ def waiver(folder: Path) -> list[Input]:
 
 def baseline(folder: Path) -> list[Input]:
     """Return the folder of a result, to which that result is compared as to its baseline."""
-    out = _checked(folder)
+    out = _result_folder(folder)
     result = load_result(out)
 
     def use(place: Path, _: int) -> Any:
@@ -177,7 +177,7 @@ def baseline(folder: Path) -> list[Input]:
     return [Input("result", {file.name: file.read_bytes() for file in files}, TEXT, use)]
 
 
-def _checked(folder: Path) -> Path:
+def _result_folder(folder: Path) -> Path:
     out = folder / "result"
     drivelint.check(
         [sources.SCENES / "collision.mcap"], rules=["ukhc.no-collision", "ukhc.r162.*"], map=sources.SCENES / "overtake-road.xodr",

@@ -13,7 +13,7 @@ from tests.fuzz.sources import SCENES
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tests.fuzz.traces import Read
+    from tests.fuzz.traces import DamagedTrace
 
     Row = dict[str, Any]
 
@@ -32,7 +32,7 @@ def judge(paths: list[Path], options: dict[str, Any]) -> tuple[list[Row], dict[s
     return result.drives.arrow().to_pylist(), verdicts
 
 
-def problems(cases: dict[int, Read], whole: list[Row]) -> dict[int, tuple[str, str]]:
+def problems(cases: dict[int, DamagedTrace], whole: list[Row]) -> dict[int, tuple[str, str]]:
     """Judge the cases of one source; return number -> outcome and detail of those that show a bug. `whole`: the whole file's verdicts."""
     source = next(iter(cases.values())).source
     numbers = {str(case.path): number for number, case in cases.items()}

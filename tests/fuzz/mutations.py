@@ -37,10 +37,10 @@ def generator(seed: object) -> Random:
     return Random(str(seed))  # noqa: S311 - cases must be repeatable
 
 
-def _span(data: bytes, rng: Random, most: int) -> tuple[int, int]:
+def _span(data: bytes, rng: Random, max_length: int) -> tuple[int, int]:
     """Return begin and end of some bytes, at most this many; short runs are as likely as long ones."""
     at = rng.randrange(len(data) + 1)
-    return at, min(len(data), at + int(2 ** rng.uniform(0, max(1, most).bit_length())))
+    return at, min(len(data), at + int(2 ** rng.uniform(0, max(1, max_length).bit_length())))
 
 
 def flip_bits(data: bytes, rng: Random) -> bytes:

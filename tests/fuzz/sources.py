@@ -45,10 +45,10 @@ class Source:
     options: dict[str, Any] = field(default_factory=dict)
     protected: bool = False
 
-    def written(self, folder: Path, changed: dict[str, bytes] | None = None) -> Path:
+    def write(self, folder: Path, changes: dict[str, bytes] | None = None) -> Path:
         """Write the files, some of them changed, and return the path that is given to the reader, whose name is the folder's."""
         folder.mkdir(parents=True)
-        for name, data in {**self.files, **(changed or {})}.items():
+        for name, data in {**self.files, **(changes or {})}.items():
             (folder / self._name(name, folder)).write_bytes(data)
         return folder / self._name(self.entry, folder) if self.entry else folder
 
@@ -139,7 +139,7 @@ def ros(folder: Path) -> list[Source]:
         ros_log.transform(ros_drive.T0, "map", "odom", 1.0),
         ros_log.report("TurnIndicatorsReport", ros_drive.T0, report=2),
         *ros_drive.ego(n=20),
-        *ros_drive.others()[:20],
+        *ros_drive.road_users()[:20],
         *(ros_log.tracks(t_s, ros_log.track(3, 50.0 + t_s, 9.0, speed=1.0)) for t_s in ros_drive.ticks(20)),
     ]
     messages = sorted((m for m in messages if m[0] != "/perception/objects"), key=lambda message: message[2])
@@ -173,13 +173,13 @@ def ros(folder: Path) -> list[Source]:
 
 def sqlite(folder: Path) -> list[Source]:
     """Return bags of ROS 2 in SQLite: with message definitions and without, in one file and split, and with transforms for odometry."""
-    messages = sorted([*ros_drive.ego(n=20), *ros_drive.others()[:20]], key=lambda message: message[2])
+    messages = sorted([*ros_drive.ego(n=20), *ros_drive.road_users()[:20]], key=lambda message: message[2])
     moving = [
         ros_log.transform(t_s, "map", "base_link", *ros_drive.along(t_s), yaw=ros_drive.TURN)
         for t_s in ros_drive.ticks(20)
     ]
     one = _single(sqlite_log.write(folder / "sqlite.db3", messages))
-    old = _single(sqlite_log.write(folder / "old.db3", [*moving, *ros_drive.others()[:20]], definitions=False))
+    old = _single(sqlite_log.write(folder / "old.db3", [*moving, *ros_drive.road_users()[:20]], definitions=False))
     split = sqlite_log.bag(folder / "split", [messages[:20], messages[20:]])
     return [one, old, Source("split", {file.name: file.read_bytes() for file in sorted(split.iterdir())}, "")]
 
@@ -277,6 +277,6 @@ def scratch() -> Path:
     return Path(tempfile.mkdtemp(prefix="drivelint-fuzz-"))
 
 
-def removed(folder: Path) -> None:
+def remove_folder(folder: Path) -> None:
     """Remove a folder with what it holds."""
     shutil.rmtree(folder, ignore_errors=True)

@@ -22,13 +22,13 @@ from tests.fuzz.worker import KINDS, Bench, Job
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-JUDGED = ("osi-mcap",)
+JUDGED_KINDS = ("osi-mcap",)
 
 
 @pytest.mark.slow
 def test_two_hundred_damaged_files_are_refused_flagged_or_as_before() -> None:
     with Driver() as driver:
-        work = [*jobs(200, KINDS, 17, judged=False), *jobs(20, JUDGED, 18)]
+        work = [*jobs(200, KINDS, 17, is_judged=False), *jobs(20, JUDGED_KINDS, 18)]
         found = [outcome for job in work for outcome in driver.run(job)]
     assert [each for each in found if each.outcome in BAD] == []
     assert {each.kind for each in found} == set(KINDS)
@@ -74,7 +74,7 @@ def test_a_process_that_dies_or_hangs_is_a_finding_and_the_rest_goes_on(monkeypa
     monkeypatch.setattr("tests.fuzz.driver.serve", _died)
     monkeypatch.setattr("tests.fuzz.driver.START_LIMIT_S", 4.0)
     with Driver(time_limit_s=1.0) as driver:
-        found = list(driver.run(Job("csv", 1, 0, 3, judged=False)))
+        found = list(driver.run(Job("csv", 1, 0, 3, is_judged=False)))
     assert [(each.number, each.outcome) for each in found] == [(0, "died"), (1, "hang"), (2, "died")]
     assert "SIGSEGV" in found[0].detail
 
@@ -109,7 +109,7 @@ def test_a_table_that_does_not_say_that_it_has_no_checksums_is_a_bug(
 ) -> None:
     cars = next(source for source in bench.of("csv") if source.name == "cars")
     whole = bench.whole_content("csv", cars)
-    path = cars.written(tmp_path / "a", {"cars.csv": cars.files["cars.csv"].replace(b",3.0000,", b",3.0001,", 1)})
+    path = cars.write(tmp_path / "a", {"cars.csv": cars.files["cars.csv"].replace(b",3.0000,", b",3.0001,", 1)})
     assert traces.read_case(path, cars, whole, rewritten=False)[0] == "unprotected"
     monkeypatch.setattr("drivelint.formats.registry.UNPROTECTED_FINDING", QualityFinding("gap", "info", "x"))
     assert traces.read_case(path, cars, whole, rewritten=False)[0] == "unsaid"

@@ -49,7 +49,7 @@ def read(path: Path, source: Source) -> Trace:
 
 
 @dataclass
-class Read:
+class DamagedTrace:
     """A damaged trace that was read: where it lies, what was found."""
 
     path: Path
@@ -58,7 +58,9 @@ class Read:
     is_unprotected: bool
 
 
-def read_case(path: Path, source: Source, whole: tuple[Any, ...], *, rewritten: bool) -> tuple[str, str, Read | None]:
+def read_case(
+    path: Path, source: Source, whole: tuple[Any, ...], *, rewritten: bool
+) -> tuple[str, str, DamagedTrace | None]:
     """Read a damaged trace; return the outcome, its detail, and the trace where it is to be judged.
 
     `rewritten`: the content was changed and new checksums were made: it is another drive.
@@ -74,7 +76,7 @@ def read_case(path: Path, source: Source, whole: tuple[Any, ...], *, rewritten: 
     unprotected = any(row["check_id"] == "unprotected" for row in findings)
     if content_of(trace) == whole:
         return "same", "", None
-    found = Read(path, source, lossy, unprotected)
+    found = DamagedTrace(path, source, lossy, unprotected)
     if lossy:
         return "lossy", "", found
     if unprotected or rewritten:
@@ -82,9 +84,9 @@ def read_case(path: Path, source: Source, whole: tuple[Any, ...], *, rewritten: 
     return ("silent" if source.protected else "unsaid"), _difference(content_of(trace), whole), found
 
 
-def _difference(found: tuple[Any, ...], whole: tuple[Any, ...]) -> str:
-    names = [name for name, table in found[0].items() if table != whole[0][name]]
-    others = [i for i, (a, b) in enumerate(zip(found[1:], whole[1:], strict=True)) if a != b]
+def _difference(content: tuple[Any, ...], whole: tuple[Any, ...]) -> str:
+    names = [name for name, table in content[0].items() if table != whole[0][name]]
+    others = [i for i, (a, b) in enumerate(zip(content[1:], whole[1:], strict=True)) if a != b]
     return f"tables {names}, others {others}"
 
 

@@ -14,14 +14,14 @@ from tests.fuzz import judging, traces
 from tests.fuzz.inputs import INPUTS, Input, use_case
 from tests.fuzz.mutations import generator
 from tests.fuzz.outcome import Outcome
-from tests.fuzz.sources import Source, removed, scratch
+from tests.fuzz.sources import Source, remove_folder, scratch
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from multiprocessing.connection import Connection
     from random import Random
 
-    from tests.fuzz.traces import Changed, Read
+    from tests.fuzz.traces import Changed, DamagedTrace
 
 REWRITTEN: Final[dict[str, tuple[tuple[str, ...], Callable[[Source, Random], Changed]]]] = {
     "messages": (("osi-mcap", "foxglove", "ros"), traces.with_other_messages),
@@ -40,7 +40,7 @@ class Job(NamedTuple):
     seed: int
     first: int
     n: int
-    judged: bool
+    is_judged: bool
     save: str | None = None
 
 
@@ -71,7 +71,7 @@ class Bench:
         """Return what the undamaged files say."""
         key = kind, source.name
         if key not in self.whole:
-            place = source.written(self.home / f"whole-{kind}-{source.name}")
+            place = source.write(self.home / f"whole-{kind}-{source.name}")
             if isinstance(source, Input):
                 self.whole[key] = source.use(place, 1)
             else:
@@ -81,13 +81,13 @@ class Bench:
     def whole_verdicts(self, source: Source) -> list[dict[str, Any]]:
         """Return the verdicts of an undamaged trace."""
         if source.name not in self.verdicts:
-            _, found = judging.judge([source.written(self.home / f"judged-{source.name}")], source.options)
+            _, found = judging.judge([source.write(self.home / f"judged-{source.name}")], source.options)
             (self.verdicts[source.name],) = found.values()
         return self.verdicts[source.name]
 
     def run(self, job: Job) -> Iterator[Outcome | int]:
         """Yield each number before it is tried, and its outcome; then those that judging found to be worse."""
-        readable: dict[str, dict[int, Read]] = {}
+        readable: dict[str, dict[int, DamagedTrace]] = {}
         told: dict[int, str] = {}
         place = scratch()
         try:
@@ -96,7 +96,7 @@ class Bench:
                 outcome, read = self._case(job, number, place / f"{job.kind}-{number}")
                 yield outcome
                 told[number] = outcome.source
-                if read is not None and job.judged:
+                if read is not None and job.is_judged:
                     readable.setdefault(outcome.source, {})[number] = read
             for name, cases in readable.items():
                 yield next(iter(cases))
@@ -104,16 +104,16 @@ class Bench:
                 for number, (worse, detail) in judging.problems(cases, whole).items():
                     yield Outcome(job.kind, number, name, worse, detail)
         finally:
-            removed(place)
+            remove_folder(place)
 
-    def _case(self, job: Job, number: int, place: Path) -> tuple[Outcome, Read | None]:
+    def _case(self, job: Job, number: int, place: Path) -> tuple[Outcome, DamagedTrace | None]:
         rng = generator(f"{job.seed}/{job.kind}/{number}")
         source = rng.choice(self.of(job.kind))
         whole = self.whole_content(job.kind, source)
         rewritten = job.kind in REWRITTEN
         change = REWRITTEN[job.kind][1] if rewritten else traces.damaged
         changed = source.damaged(rng) if isinstance(source, Input) else change(source, rng)
-        path = source.written(Path(job.save) if job.save else place, changed)
+        path = source.write(Path(job.save) if job.save else place, changed)
         if isinstance(source, Input):
             return Outcome(job.kind, number, source.name, *use_case(source, path, number, whole)), None
         outcome, detail, read = traces.read_case(path, source, whole, rewritten=rewritten)
@@ -143,7 +143,7 @@ def serve(connection: Connection, log: str) -> None:
                 return
             connection.send(None)
     finally:
-        removed(bench.home)
+        remove_folder(bench.home)
 
 
 def _limit_memory() -> None:

@@ -25,7 +25,7 @@ class Nasty(NamedTuple):
     files: drive.Files
     result: Path
     audit: Path
-    said: Ran
+    check_run: Ran
 
 
 @pytest.fixture(scope="session")

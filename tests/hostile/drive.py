@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from mcap.reader import make_reader
 from mcap.writer import Writer
 
-from tests.hostile.words import EGO, EVIL, FILE, LONG, OTHER, TOO_LONG
+from tests.hostile.words import EGO, EVIL, FILE, LONG, ONCOMING, TOO_LONG
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Files(NamedTuple):
 def write(folder: Path) -> Files:
     """Write the overtake that ends in a contact, with these names."""
     rows = pyarrow.csv.read_csv(OVERTAKE / "collision.csv").to_pydict()
-    names = {"ego": EGO, "oncoming": OTHER, "parked": LONG}
+    names = {"ego": EGO, "oncoming": ONCOMING, "parked": LONG}
     rows["actor"] = [names[name] for name in rows["actor"]]
     files = Files(folder / f"{FILE}.parquet", folder / f"{FILE}.xodr", folder / "mapping.toml", folder / "rules")
     pq.write_table(pa.table(rows), files.log)

@@ -10,7 +10,7 @@ from markdown_it import MarkdownIt
 STEERING = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]")
 """What a terminal, an editor or a viewer obeys rather than shows."""
 _STYLE = re.compile(r"\x1b\[[0-9;]*m")
-_ALLOWED = {
+_ALLOWED_TAGS = {
     "a",
     "b",
     "br",
@@ -30,18 +30,18 @@ _ALLOWED = {
     "hr",
     "s",
 }
-_ALLOWED |= {"table", "thead", "tbody", "tr", "th", "td"}
+_ALLOWED_TAGS |= {"table", "thead", "tbody", "tr", "th", "td"}
 
 
-def assert_quiet(said: str, *, styled: bool = False, lines_are_ours: bool = True) -> None:
+def assert_quiet(text: str, *, styled: bool = False, lines_are_ours: bool = True) -> None:
     """Assert that a text steers no terminal, gives a build server no command, and that no line of it is a stranger's.
 
     `styled`: colours are ours. `lines_are_ours`: False where the text holds cells in quotes.
     """
     if styled:
-        said = _STYLE.sub("", said)
-    assert {match[0] for match in STEERING.finditer(said)} == set()
-    for line in said.split("\n"):
+        text = _STYLE.sub("", text)
+    assert {match[0] for match in STEERING.finditer(text)} == set()
+    for line in text.split("\n"):
         assert not line.lstrip().startswith("::"), line[:80]
         assert not re.search(r"##\w*\[", line), line[:80]
         assert not (lines_are_ours and line.startswith(("exit 0: nothing failed", ".shell"))), line[:80]

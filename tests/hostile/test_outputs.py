@@ -16,7 +16,7 @@ import drivelint
 from tests.fleet_report.command import ran
 from tests.hostile.drive import SCENE, write_mcap
 from tests.hostile.readers import STEERING, assert_markdown_is_ours, assert_page_is_ours
-from tests.hostile.words import EGO, EVIL, MARK, OTHER
+from tests.hostile.words import EGO, EVIL, MARK, ONCOMING
 from tests.report.browser import CHROMIUM, Page
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def test_sarif_and_json(nasty: Nasty) -> None:
     told = json.loads((nasty.result / "report.sarif").read_bytes())
     assert {STEERING.search((nasty.result / "report.sarif").read_text("utf-8"))} == {None}
     texts = [found["message"] for found in told["runs"][0]["results"]]
-    assert any(OTHER in message["text"] for message in texts)
+    assert any(ONCOMING in message["text"] for message in texts)
     assert all(message.keys() == {"text"} for message in texts)  # no Markdown, no arguments of placeholders
     summary = json.loads((nasty.result / "summary.json").read_bytes())
     assert MARK in json.dumps(summary)
@@ -120,7 +120,7 @@ def test_sarif_and_json(nasty: Nasty) -> None:
 def test_tables_have_the_words_as_they_are(nasty: Nasty) -> None:
     rows = pq.read_table(nasty.result / "findings.parquet").to_pydict()
     assert set(rows["ego_id"]) == {EGO}
-    assert OTHER in rows["object_id"]
+    assert ONCOMING in rows["object_id"]
 
 
 def messages(path: Path) -> list[tuple[str, str, bytes]]:

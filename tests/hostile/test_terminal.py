@@ -17,7 +17,7 @@ import pytest
 from tests.fleet_report.command import Ran, ran
 from tests.hostile.drive import write_mcap
 from tests.hostile.readers import assert_quiet
-from tests.hostile.words import EGO, FILE, MARK, OTHER
+from tests.hostile.words import EGO, FILE, MARK, ONCOMING
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 QUERY = "SELECT drive_id, ego_id, object_id, reason, margin FROM findings ORDER BY ALL"
 
 
-def assert_said(done: Ran, *codes: int) -> str:
-    assert done.code in codes, done.err
-    assert_quiet(done.err)
-    assert MARK in done.out
-    return done.out
+def assert_said(run: Ran, *codes: int) -> str:
+    assert run.code in codes, run.err
+    assert_quiet(run.err)
+    assert MARK in run.out
+    return run.out
 
 
 def test_check(nasty: Nasty) -> None:
-    said = assert_said(nasty.said, 1)
+    said = assert_said(nasty.check_run, 1)
     assert_quiet(said)
     (hint,) = re.findall(r"^explain  drivelint explain (\S+) --in ", said, re.MULTILINE)
     assert re.fullmatch("[0-9a-f]{16}", hint)
@@ -81,7 +81,7 @@ def test_explain_and_inspect(nasty: Nasty) -> None:
     assert_quiet(assert_said(ran("explain", "evil.near", "--in", nasty.result, "--samples", 0), 0))
     told = ran("explain", "evil.near", "--in", nasty.result, "--samples", 0, "--format", "json")
     assert_quiet(assert_said(told, 0))
-    assert json.loads(told.out)["verdict"]["object_id"] == OTHER
+    assert json.loads(told.out)["verdict"]["object_id"] == ONCOMING
     assert_quiet(assert_said(ran("inspect", nasty.files.log, *nasty.files.options), 0))
     told = ran("inspect", nasty.files.log, *nasty.files.options, "--format", "json")
     assert_quiet(assert_said(told, 0))

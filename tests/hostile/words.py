@@ -16,7 +16,7 @@ PARTS: Final = (
 )
 EVIL: Final = "".join(PARTS)
 EGO: Final = f"=1+1{EVIL}"
-OTHER: Final = f"@o{EVIL}"
+ONCOMING: Final = f"@o{EVIL}"
 LONG: Final = f"-{'L' * 999}"
 """As long as an actor's id may be."""
 TOO_LONG: Final = "L" * 100_000

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from tests.false_alarms import worlds
 from tests.sumo.world import simulate
 
-from .crop import compared, counted
+from .crop import compared, count_pairs
 
 ROADS = {"rural": (simulate, "lht", (1000.0, 2700.0)), "motorway": (worlds.motorway, "rht", (1500.0, 3900.0))}
 """Who drives, on which side, and from where to where along x the part reaches."""
@@ -35,9 +35,9 @@ def main() -> int:
             drive, hand, span = ROADS[road]
             folder = (asked.folder or Path(temporary)) / road
             files = drive(folder / "sumo", seconds=asked.seconds, seed=asked.seed)
-            pairs = compared(files, folder, span, hand, most=asked.egos)
+            pairs = compared(files, folder, span, hand, max_egos=asked.egos)
             print(f"{road:36}{'decided':>9}{'decided on the part':>22}{'contradicted':>15}{'unknown on both':>18}")
-            for rule, counts in counted(pairs).items():
+            for rule, counts in count_pairs(pairs).items():
                 decided = sum(n for (whole, _), n in counts.items() if whole in {"pass", "fail"})
                 both = sum(
                     n for (whole, part), n in counts.items() if whole in {"pass", "fail"} and part in {"pass", "fail"}

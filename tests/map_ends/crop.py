@@ -50,7 +50,7 @@ class Verdict(NamedTuple):
     reason: str | None
 
 
-NOTHING: Final = Verdict("not_applicable", None)
+NOT_APPLICABLE: Final = Verdict("not_applicable", None)
 
 
 class Pair(NamedTuple):
@@ -80,7 +80,7 @@ def compared(
     span: tuple[float, float],
     hand: str,
     *,
-    most: int | None = None,
+    max_egos: int | None = None,
     rules: Sequence[str] = RULES,
 ) -> dict[Key, Pair]:
     """Return the verdicts of those who drive on the part between two values of x for a while (at most so many), each as ego."""
@@ -95,22 +95,25 @@ def compared(
     on = between(span[0] + _EDGE_M, span[1] - _EDGE_M)
     egos = [track.take(on(track.x, track.y)) for track in there]
     egos = [track for track in egos if len(track.t_ns) and (track.t_ns[-1] - track.t_ns[0]) * 1e-9 >= LEAST_S]
-    if most is not None and len(egos) > most:
-        egos = [egos[k] for k in np.linspace(0, len(egos) - 1, most).astype(int)]
-    whole = judged(_drives(egos, everybody, folder / "whole", files.map, road), rules)
-    less = judged(_drives(egos, there, folder / "part", files.map, part), rules)
-    return {key: Pair(whole.get(key, NOTHING), less.get(key, NOTHING)) for key in sorted(whole.keys() | less.keys())}
+    if max_egos is not None and len(egos) > max_egos:
+        egos = [egos[k] for k in np.linspace(0, len(egos) - 1, max_egos).astype(int)]
+    whole = worst_verdicts(_drives(egos, everybody, folder / "whole", files.map, road), rules)
+    less = worst_verdicts(_drives(egos, there, folder / "part", files.map, part), rules)
+    return {
+        key: Pair(whole.get(key, NOT_APPLICABLE), less.get(key, NOT_APPLICABLE))
+        for key in sorted(whole.keys() | less.keys())
+    }
 
 
-def _drives(egos: Sequence[Track], others: Sequence[Track], folder: Path, road: Path, on: MapTables) -> Iterator[Drive]:
+def _drives(egos: Sequence[Track], tracks: Sequence[Track], folder: Path, road: Path, on: MapTables) -> Iterator[Drive]:
     """Yield one drive per ego, with what the others do meanwhile; its id is the ego's."""
     for ego in egos:
-        now = [t.take((t.t_ns >= ego.t_ns[0]) & (t.t_ns <= ego.t_ns[-1])) for t in others if t.actor_id != ego.actor_id]
+        now = [t.take((t.t_ns >= ego.t_ns[0]) & (t.t_ns <= ego.t_ns[-1])) for t in tracks if t.actor_id != ego.actor_id]
         write(folder / ego.actor_id, ego, [track for track in now if len(track.t_ns)], road, None)
         yield Drive(read_trace(folder / ego.actor_id, IngestOptions(in_sight=True)), on)
 
 
-def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
+def worst_verdicts(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
     """Return the verdicts of these drives, by ego."""
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(), ()))
@@ -129,7 +132,7 @@ def judged(drives: Iterator[Drive], rules: Sequence[str]) -> dict[Key, Verdict]:
     return {(names[drive], *key): Verdict(worst["verdict"], worst["reason"]) for drive, *key, worst in rows}
 
 
-def counted(pairs: dict[Key, Pair]) -> dict[str, Counter[tuple[str, str]]]:
+def count_pairs(pairs: dict[Key, Pair]) -> dict[str, Counter[tuple[str, str]]]:
     """Return how often each pair of verdicts occurs, by rule."""
     found: dict[str, Counter[tuple[str, str]]] = defaultdict(Counter)
     for (_, rule, *_), pair in pairs.items():

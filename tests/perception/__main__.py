@@ -47,11 +47,11 @@ def main() -> int:
                     for rule, tally in tallies.items():
                         sums[level].setdefault(rule, Counter()).update(tally.pairs)
                 print(f"{road} {seed}: {driven:.2f} h", file=sys.stderr, flush=True)
-    grave = [_printed(level, hours, sums[level]) for level in asked.levels]
+    grave = [_print_level(level, hours, sums[level]) for level in asked.levels]
     return int(sum(grave) > 0)
 
 
-def _printed(level: str, hours: float, sums: dict[str, Counter[tuple[str, str]]]) -> int:
+def _print_level(level: str, hours: float, sums: dict[str, Counter[tuple[str, str]]]) -> int:
     """Print a level's table; return how many breaches of critical and major rules became a pass, or were not seen."""
     rules = {rule.id: rule for rule in catalogue.load_rules().values() if rule.status == "stable"}
     print(f"{level}: {hours:.2f} h of egos\n")
@@ -68,8 +68,16 @@ def _printed(level: str, hours: float, sums: dict[str, Counter[tuple[str, str]]]
 
 
 def _line(rule: str, severity: str, tally: Tally) -> str:
-    share = f"{tally.judged / tally.decided:.2f}" if tally.decided else "-"
-    values = (tally.decided, tally.fails, tally.judged, share, tally.false_passes, tally.missed, tally.false_fails)
+    share = f"{tally.decided_by_both / tally.decided:.2f}" if tally.decided else "-"
+    values = (
+        tally.decided,
+        tally.fails,
+        tally.decided_by_both,
+        share,
+        tally.false_passes,
+        tally.missed,
+        tally.false_fails,
+    )
     return f"{rule:34}{severity:>9}" + "".join(f"{value:>11}" for value in values)
 
 

@@ -36,9 +36,9 @@ class Tally(NamedTuple):
 
     pairs: Counter[tuple[str, str]]
 
-    def n(self, truth: Iterable[str], seen: Iterable[str]) -> int:
+    def n(self, truth: Iterable[str], recording: Iterable[str]) -> int:
         """Return how many have one of these verdicts on what was there, and one of those on the recording."""
-        return sum(self.pairs[a, b] for a in truth for b in seen)
+        return sum(self.pairs[a, b] for a in truth for b in recording)
 
     @property
     def decided(self) -> int:
@@ -51,7 +51,7 @@ class Tally(NamedTuple):
         return self.n(("fail",), ("pass", "fail", "unknown", "not_applicable", "error"))
 
     @property
-    def judged(self) -> int:
+    def decided_by_both(self) -> int:
         """How many of those the recording decides as well."""
         return self.n(("pass", "fail"), ("pass", "fail"))
 
@@ -71,11 +71,11 @@ class Tally(NamedTuple):
         return self.n(("pass", "not_applicable"), ("fail",))
 
 
-def egos(tracks: Sequence[Track], most: int | None) -> list[Track]:
-    """Return who is long enough there to be an ego; of more than `most` every so many-th."""
+def egos(tracks: Sequence[Track], max_egos: int | None) -> list[Track]:
+    """Return who is long enough there to be an ego; of more than `max_egos` every so many-th."""
     found = [track for track in tracks if (track.t_ns[-1] - track.t_ns[0]) * 1e-9 >= LEAST_S]
-    step = 1 if most is None or len(found) <= most else len(found) / most
-    return [found[int(k * step)] for k in range(min(len(found), most or len(found)))]
+    step = 1 if max_egos is None or len(found) <= max_egos else len(found) / max_egos
+    return [found[int(k * step)] for k in range(min(len(found), max_egos or len(found)))]
 
 
 def compared(  # noqa: PLR0917
@@ -83,28 +83,28 @@ def compared(  # noqa: PLR0917
     road: Path,
     folder: Path,
     recorders: Mapping[str, Recorder],
-    most: int | None,
+    max_egos: int | None,
     options: Sequence[str],
 ) -> tuple[dict[str, dict[str, Tally]], float]:
     """Judge what was there, once, and what each ego records of it; return by level a tally by rule, and the hours that egos drove."""
-    chosen = egos(tracks, most)
+    chosen = egos(tracks, max_egos)
     for number, ego in enumerate(chosen):
         write(folder / "truth" / ego.actor_id, ego, _around(ego, tracks), road, None)
-        others = [track for track in tracks if track.actor_id != ego.actor_id]
+        objects = [track for track in tracks if track.actor_id != ego.actor_id]
         for level, recorder in recorders.items():
-            seen = _split(recorded(ego, others, recorder, number))
+            seen = _split(recorded(ego, objects, recorder, number))
             write(folder / level / ego.actor_id, *seen, road, recorder.range_m)
-    truth = _judged(folder / "truth", options)
-    tallies = {level: _tallies(truth, _judged(folder / level, options)) for level in recorders}
+    truth = _worst_verdicts(folder / "truth", options)
+    tallies = {level: _tallies(truth, _worst_verdicts(folder / level, options)) for level in recorders}
     hours = sum(float(ego.t_ns[-1] - ego.t_ns[0]) for ego in chosen) / 3.6e12
     return tallies, hours
 
 
-def _tallies(truth: Mapping[Key, str], seen: Mapping[Key, str]) -> dict[str, Tally]:
+def _tallies(truth: Mapping[Key, str], recording: Mapping[Key, str]) -> dict[str, Tally]:
     """Return by rule how its verdicts on what was there became those on the recording."""
     pairs: dict[str, Counter[tuple[str, str]]] = defaultdict(Counter)
-    for key in truth.keys() | seen.keys():
-        pairs[key[1]][truth.get(key, "not_applicable"), seen.get(key, "not_applicable")] += 1
+    for key in truth.keys() | recording.keys():
+        pairs[key[1]][truth.get(key, "not_applicable"), recording.get(key, "not_applicable")] += 1
     return {rule: Tally(pairs[rule]) for rule in sorted(pairs)}
 
 
@@ -119,11 +119,11 @@ def _split(tracks: Sequence[Track]) -> tuple[Track, list[Track]]:
     return tracks[0], list(tracks[1:])
 
 
-def write(folder: Path, ego: Track, others: Sequence[Track], road: Path, range_m: float | None) -> None:
+def write(folder: Path, ego: Track, objects: Sequence[Track], road: Path, range_m: float | None) -> None:
     """Write a drive as a folder of Parquet tables."""
     folder.mkdir(parents=True)
     (folder / "map.xodr").write_bytes(road.read_bytes())
-    everybody = [ego, *others]
+    everybody = [ego, *objects]
     actors = {
         "actor_id": pa.array([t.actor_id for t in everybody]),
         "actor_class": pa.array([t.kind for t in everybody], pa.string()),
@@ -153,7 +153,7 @@ def write(folder: Path, ego: Track, others: Sequence[Track], road: Path, range_m
         pq.write_table(pa.table({"sensor_range_m": [range_m]}), folder / "data_log.parquet")
 
 
-def _judged(folder: Path, options: Sequence[str]) -> dict[Key, str]:
+def _worst_verdicts(folder: Path, options: Sequence[str]) -> dict[Key, str]:
     """Check the drives of a folder; return the worst verdict by ego, rule and profile."""
     out = folder.with_name(f"{folder.name}.out")
     command = [sys.executable, "-m", "drivelint", "check", str(folder), "--rules", "all", "--ignore", "status:draft"]

@@ -57,17 +57,17 @@ HARSH: Final = Recorder(
 LEVELS: Final = {"mild": MILD, "faulty": FAULTY, "harsh": HARSH}
 
 
-def recorded(ego: Track, others: Sequence[Track], recorder: Recorder, seed: int) -> list[Track]:
+def recorded(ego: Track, objects: Sequence[Track], recorder: Recorder, seed: int) -> list[Track]:
     """Return what is written: the ego's own track at the recorder's rate, and the others as they are seen."""
     rng = np.random.default_rng(seed)
     period_ns = round(1e9 / recorder.hz)
     ego = ego.take((ego.t_ns - ego.t_ns[0]) % period_ns == 0)
-    there = [_during(track, ego) for track in others]
+    there = [_during(track, ego) for track in objects]
     there = [track for track in there if len(track.t_ns)]
     seen = visible(ego, there, recorder)
     found = [ego]
     for track, mask in zip(there, seen, strict=True):
-        found += _written(track, mask, recorder, rng)
+        found += _recorded_parts(track, mask, recorder, rng)
     return found
 
 
@@ -76,13 +76,13 @@ def _during(track: Track, ego: Track) -> Track:
     return track.take(np.isin(track.t_ns, ego.t_ns))
 
 
-def visible(ego: Track, others: Sequence[Track], recorder: Recorder) -> list[Mask]:
+def visible(ego: Track, objects: Sequence[Track], recorder: Recorder) -> list[Mask]:
     """Say of each sample whether the ego sees it: within range, and a corner or the middle not behind another box."""
     at = {int(t): k for k, t in enumerate(ego.t_ns)}
-    index = [np.array([at[int(t)] for t in track.t_ns], np.int64) for track in others]
+    index = [np.array([at[int(t)] for t in track.t_ns], np.int64) for track in objects]
     near, far, low, high, middle = ([] for _ in range(5))
     points = []
-    for track, k in zip(others, index, strict=True):
+    for track, k in zip(objects, index, strict=True):
         dx, dy = track.x - ego.x[k], track.y - ego.y[k]
         c, s = np.cos(track.yaw)[:, None], np.sin(track.yaw)[:, None]
         along = track.length / 2 * np.array([1, 1, -1, -1, 0])
@@ -115,7 +115,7 @@ def visible(ego: Track, others: Sequence[Track], recorder: Recorder) -> list[Mas
     return seen
 
 
-def _written(track: Track, seen: Mask, recorder: Recorder, rng: np.random.Generator) -> list[Track]:
+def _recorded_parts(track: Track, in_view: Mask, recorder: Recorder, rng: np.random.Generator) -> list[Track]:
     """Return its track as it is written: parts with an id each, without what is not seen."""
     n = len(track.t_ns)
     period_s = 1.0 / recorder.hz
@@ -143,15 +143,15 @@ def _written(track: Track, seen: Mask, recorder: Recorder, rng: np.random.Genera
     y = np.where(jump, y + far * np.sin(way), np.where(back, y - step * np.sin(track.yaw), y))
     yaw = np.where(stretches(recorder.flips, 0.1, 1.0), yaw + np.pi, yaw)
     yaw = np.remainder(yaw + np.pi, 2 * np.pi) - np.pi
-    seen = seen & ~stretches(recorder.dropouts, 0.1, 2.0)
+    in_view = in_view & ~stretches(recorder.dropouts, 0.1, 2.0)
     length, width = np.maximum(0.3, np.array([track.length, track.width]) + rng.normal(0, recorder.size_m, 2))
     kind = None if rng.random() < recorder.flickers else track.kind
     whole = replace(track, x=x, y=y, vx=vx, vy=vy, yaw=yaw, length=float(length), width=float(width), kind=kind)
     # a new id after each switch, and wherever it was out of view for more than 2 s
-    part = np.cumsum(happens(recorder.switches) | _after_long(seen, round(2.0 / period_s)))
+    part = np.cumsum(happens(recorder.switches) | _after_long(in_view, round(2.0 / period_s)))
     found = []
-    for number in np.unique(part[seen]).tolist():
-        rows = seen & (part == number)
+    for number in np.unique(part[in_view]).tolist():
+        rows = in_view & (part == number)
         first = np.flatnonzero(rows)[: max(0, round(SEEN_FOR_S / period_s) - 1)]
         rows[first] = False
         if rows.any():
@@ -159,9 +159,9 @@ def _written(track: Track, seen: Mask, recorder: Recorder, rng: np.random.Genera
     return found
 
 
-def _after_long(seen: Mask, most: int) -> Mask:
-    """Say of each sample whether it is the first one seen after more than `most` that were not."""
-    rows = np.flatnonzero(seen)
-    again = np.zeros(len(seen), np.bool_)
-    again[rows[1:][np.diff(rows) > most + 1]] = True
+def _after_long(in_view: Mask, max_gap: int) -> Mask:
+    """Say of each sample whether it is the first one seen after more than `max_gap` that were not."""
+    rows = np.flatnonzero(in_view)
+    again = np.zeros(len(in_view), np.bool_)
+    again[rows[1:][np.diff(rows) > max_gap + 1]] = True
     return again

@@ -65,7 +65,7 @@ def main_road(folder: Path, *, seconds: int, seed: int) -> Files:
     for _ in range(worlds.count(seconds, 800)):
         start, end = (ends[k] for k in rng.choice(len(ends), size=2, replace=False, p=(0.3, 0.3, 0.14, 0.13, 0.13)))
         ways.append(("".join(start), "".join(reversed(end))))
-    return worlds.driven(folder, ways, seconds, rng, seed, _KINDS)
+    return worlds.drive_ways(folder, ways, seconds, rng, seed, _KINDS)
 
 
 def _edge(a: str, b: str, places: dict[str, tuple[float, float]], lanes: int) -> str:

@@ -73,9 +73,11 @@ def tracks(log: Path, routes: Path) -> list[Track]:
     return [_track(name, kinds[name], types.get(kinds[name], {}), np.array(rows[name])) for name in sorted(rows)]
 
 
-def _track(name: str, kind: str, said: dict[str, str], rows: Floats) -> Track:
+def _track(name: str, kind: str, vehicle_type: dict[str, str], rows: Floats) -> Track:
     t, front_x, front_y, angle, speed, signals = rows.T
-    length, width = (float(said.get(key, default)) for key, default in zip(("length", "width"), _SIZE, strict=True))
+    length, width = (
+        float(vehicle_type.get(key, default)) for key, default in zip(("length", "width"), _SIZE, strict=True)
+    )
     yaw = np.remainder(np.pi / 2 - np.radians(angle) + np.pi, 2 * np.pi) - np.pi
     bits = signals.astype(np.int64)
     indicator = np.where(bits & _LEFT, 1, np.where(bits & _RIGHT, 2, 0))

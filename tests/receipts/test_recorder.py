@@ -200,7 +200,7 @@ def _argoverse(folder: Path) -> None:
 
 def _d123(folder: Path) -> None:
     frames = [d123.Frame(t) for t in d123.times(20)]
-    d123.write_log(folder / "logs/test-set_val/log", frames, d123.driven(20))
+    d123.write_log(folder / "logs/test-set_val/log", frames, d123.ego_states(20))
     _write_shared_map(folder)
 
 

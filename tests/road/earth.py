@@ -19,7 +19,7 @@ UTM = "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs"
 KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +datum=WGS84"
 
 
-def placed(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | None, float | None]]:
+def lon_lat(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | None, float | None]]:
     """Return longitude and latitude of findings at these places (m) of a drive, as a run writes them, in a locked database."""
     with store.connect() as con:
         store.lock_down(con)

@@ -24,7 +24,7 @@ from tests.engine.few_states import log_of, states
 from tests.formats.opendrive.xodr import xodr
 from tests.formats.osi import osi_log
 from tests.report.pages import Parsed, page
-from tests.road.earth import KARLSRUHE, UTM, geo_of, metres_apart, placed, row_of
+from tests.road.earth import KARLSRUHE, UTM, geo_of, lon_lat, metres_apart, row_of
 from tests.shared_data import shared
 
 FIXTURE = Path(__file__).resolve().parents[2] / "fixtures" / "overtake"
@@ -43,7 +43,7 @@ def test_a_header_offset_moves() -> None:
     row = row_of(environment)
     assert [row[f"geo_offset_{part}"] for part in ("x_m", "y_m", "z_m", "yaw_rad")] == [499990.0, 5427990.5, 110.0, 0.0]
     assert row["geo_usable"]
-    ((lon, lat),) = placed(geo_of(environment), (10.0, 9.5))
+    ((lon, lat),) = lon_lat(geo_of(environment), (10.0, 9.5))
     assert lon == pytest.approx(9.0, abs=1e-9)
     assert lat == pytest.approx(5_428_000.0 / 0.9996 / 111_195.0, abs=0.2)  # meridian arc on a sphere
 
@@ -55,7 +55,7 @@ def test_the_north_of_a_map_is_the_north() -> None:
     """
     shifted = KARLSRUHE.replace("+lon_0=8.4", "+lon_0=8.4 +x_0=500000 +y_0=100000")
     for reference, x, y in ((KARLSRUHE, 0.0, 0.0), (shifted, 500_000.0, 100_000.0)):
-        begin, north, east = placed(geo_of(xodr_with(reference)), (x, y), (x, y + 1000.0), (x + 1000.0, y))
+        begin, north, east = lon_lat(geo_of(xodr_with(reference)), (x, y), (x, y + 1000.0), (x + 1000.0, y))
         assert begin == pytest.approx((8.4, 49.0), abs=1e-9)
         assert north == pytest.approx((8.4, 49.0 + 1000.0 / 111_209.0), abs=1e-6)
         assert east == pytest.approx((8.4 + 1000.0 / 73_172.0, 49.0), abs=1e-6)
@@ -64,9 +64,9 @@ def test_the_north_of_a_map_is_the_north() -> None:
 def test_a_header_offset_turns_first_and_moves_then() -> None:
     """A quarter turn: x of the file runs north, y west. Within a degree of its origin, the projection is a plane."""
     turned = xodr_with(KARLSRUHE, f'<offset x="1000" y="2000" hdg="{math.pi / 2}"/>')
-    plain = placed(geo_of(xodr_with(KARLSRUHE)), (1000.0 - 30.0, 2000.0 + 40.0))
-    assert placed(geo_of(turned), (40.0, 30.0)) == [pytest.approx(plain[0], abs=1e-11)]
-    assert placed(geo_of(turned), (30.0, 40.0)) != [pytest.approx(plain[0], abs=1e-6)]
+    plain = lon_lat(geo_of(xodr_with(KARLSRUHE)), (1000.0 - 30.0, 2000.0 + 40.0))
+    assert lon_lat(geo_of(turned), (40.0, 30.0)) == [pytest.approx(plain[0], abs=1e-11)]
+    assert lon_lat(geo_of(turned), (30.0, 40.0)) != [pytest.approx(plain[0], abs=1e-6)]
 
 
 def test_the_network_stays_in_its_own_coordinates() -> None:
@@ -81,7 +81,7 @@ def test_a_map_that_was_moved_to_the_log_is_moved_back() -> None:
     text = xodr().replace('revMinor="6"/>', f'revMinor="6">{said}</header>').encode()
     own = geo_of(load_map(MapSource("m", text)))
     moved = geo_of(load_map(MapSource("m", text), offset=(300.0, -50.0)))
-    assert placed(moved, (345.0, -43.0)) == [pytest.approx(placed(own, (45.0, 7.0))[0], abs=1e-12)]
+    assert lon_lat(moved, (345.0, -43.0)) == [pytest.approx(lon_lat(own, (45.0, 7.0))[0], abs=1e-12)]
 
 
 @pytest.mark.sample(8, ci=8)
@@ -112,18 +112,18 @@ def test_what_gives_positions(reference: str, place: tuple[float, float], why: s
 
 
 @pytest.mark.parametrize(
-    ("reference", "offset", "told"),
+    ("reference", "offset", "phrase"),
     [
         ("+proj=tmerc +lat_0=0 +lon_0=0", "", "placeholder"),
         ("nonsense", "", "PROJ"),
         (UTM, '<offset x="a" y="0"/>', "x='a'"),
     ],
 )
-def test_a_map_without_positions_says_why(reference: str, offset: str, told: str) -> None:
+def test_a_map_without_positions_says_why(reference: str, offset: str, phrase: str) -> None:
     environment = xodr_with(reference, offset)
     (row,) = [r for r in environment.tables["map_quality"].to_pylist() if r["check_id"] == "geo_reference_unusable"]
     assert row["severity"] == "info"
-    assert told in row["message"]
+    assert phrase in row["message"]
     assert not row_of(environment)["geo_usable"]
     library = SimpleNamespace(find=lambda log: (environment, log), doubts_on_map=lambda *_: {})
     assert drive_with_map(log_of(states(5.0)), library).geo is None  # type: ignore[arg-type]
@@ -180,7 +180,7 @@ def test_a_real_map_against_pyproj(name: str) -> None:
     to_earth = pyproj.Transformer.from_crs(row_of(environment)["geo_reference"], "EPSG:4326", always_xy=True)
     places = [(p["x_m"], p["y_m"]) for p in points]
     assert len(places) > 3
-    for found, (x, y) in zip(placed(geo_of(environment), *places), places, strict=True):
+    for found, (x, y) in zip(lon_lat(geo_of(environment), *places), places, strict=True):
         assert metres_apart(found, to_earth.transform(x, y)) < 1.0
 
 
@@ -201,7 +201,7 @@ def test_a_lanelet2_map_against_its_own_latitudes() -> None:
     nodes = [(float(n.get("lon", "nan")), float(n.get("lat", "nan"))) for n in parse_map(source).iterfind("node")]
     bounds = [(p["left_x_m"], p["left_y_m"]) for p in environment.tables["lane_point"].to_pylist() if p["k"] == 0]
     assert len(bounds) > 20
-    for found in placed(geo_of(environment), *bounds):
+    for found in lon_lat(geo_of(environment), *bounds):
         assert min(metres_apart(found, node) for node in nodes) < 1.0
 
 

@@ -10,7 +10,7 @@ import pytest
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.road.map_reader import MapSource, MapTables
 from tests.formats.commonroad.scenario_text import lanelet, scenario
-from tests.road.earth import KARLSRUHE, UTM, geo_of, metres_apart, placed, row_of
+from tests.road.earth import KARLSRUHE, UTM, geo_of, lon_lat, metres_apart, row_of
 from tests.sumo import world
 
 MUNICH = (11.5755, 48.1374)
@@ -36,12 +36,12 @@ def sumo_net(location: str) -> MapTables:
 def test_the_offset_of_a_net_was_added_to_the_projection() -> None:
     environment = sumo_net(f'<location netOffset="-691000.00,-5334000.00" projParameter="{UTM}"/>')
     assert row_of(environment)["geo_usable"]
-    (found,) = placed(geo_of(environment), (30.0, -4.0))
+    (found,) = lon_lat(geo_of(environment), (30.0, -4.0))
     assert metres_apart(found, by_pyproj(UTM, 691_030.0, 5_333_996.0)) < 0.01
 
 
 @pytest.mark.parametrize(
-    ("location", "told"),
+    ("location", "phrase"),
     [
         ("", None),
         ('<location netOffset="0.00,0.00" projParameter="!"/>', None),
@@ -50,12 +50,12 @@ def test_the_offset_of_a_net_was_added_to_the_projection() -> None:
         (f'<location netOffset="0.00,0.00" projParameter="{UTM}"/>', "placeholder"),
     ],
 )
-def test_a_net_without_places(location: str, told: str | None) -> None:
+def test_a_net_without_places(location: str, phrase: str | None) -> None:
     environment = sumo_net(location)
     assert not row_of(environment)["geo_usable"]
     found = reasons(environment)
-    assert len(found) == (told is not None)
-    assert (told or "") in "".join(found)
+    assert len(found) == (phrase is not None)
+    assert (phrase or "") in "".join(found)
 
 
 @pytest.mark.skipif(world.tool("netconvert") is None, reason="SUMO is not installed")
@@ -74,7 +74,7 @@ def test_a_net_that_netconvert_makes_of_longitudes_and_latitudes(
     subprocess.run([tool, *given], check=True, capture_output=True)
     environment = load_map(read_source(made))
     points = environment.tables["lane_point"].select(["x_m", "y_m"]).to_pylist()
-    found = placed(geo_of(environment), *((p["x_m"], p["y_m"]) for p in points))
+    found = lon_lat(geo_of(environment), *((p["x_m"], p["y_m"]) for p in points))
     for place, node in ((found[0], ends[0]), (found[-1], ends[1])):
         assert metres_apart(place, (node[0], node[1] - 1.6 / 111_195.0)) < 0.5
     monkeypatch.syspath_prepend(str(Path(pytest.importorskip("sumo").SUMO_HOME) / "tools"))
@@ -98,15 +98,15 @@ def test_the_translation_of_a_commonroad_map_leads_to_the_projection() -> None:
     moved = commonroad(
         geo_transformation(UTM, xTranslation="691000", yTranslation="5334000.5", zRotation="0.0", scaling="1.0")
     )
-    (found,) = placed(geo_of(moved), (30.0, -4.0))
+    (found,) = lon_lat(geo_of(moved), (30.0, -4.0))
     assert metres_apart(found, by_pyproj(UTM, 691_030.0, 5_333_996.5)) < 0.01
     plain = commonroad(geo_transformation(KARLSRUHE))
-    (found,) = placed(geo_of(plain), (30.0, -4.0))
+    (found,) = lon_lat(geo_of(plain), (30.0, -4.0))
     assert metres_apart(found, by_pyproj(KARLSRUHE, 30.0, -4.0)) < 0.01
 
 
 @pytest.mark.parametrize(
-    ("location", "told"),
+    ("location", "phrase"),
     [
         ("<gpsLatitude>44.86833</gpsLatitude><gpsLongitude>13.84806</gpsLongitude>", None),
         ("<gpsLatitude>999</gpsLatitude><gpsLongitude>999</gpsLongitude>", None),
@@ -117,9 +117,9 @@ def test_the_translation_of_a_commonroad_map_leads_to_the_projection() -> None:
         (geo_transformation("Karlsruhe"), "PROJ"),
     ],
 )
-def test_a_commonroad_map_without_places(location: str, told: str | None) -> None:
+def test_a_commonroad_map_without_places(location: str, phrase: str | None) -> None:
     environment = commonroad(location)
     assert not row_of(environment)["geo_usable"]
     found = reasons(environment)
-    assert len(found) == (told is not None)
-    assert (told or "") in "".join(found)
+    assert len(found) == (phrase is not None)
+    assert (phrase or "") in "".join(found)

@@ -20,7 +20,7 @@ KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +k=1 +x_0=0 +y_0=0 +datum=WGS84"
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "same", "comparable"),
+    ("first", "second", "same", "comparable"),
     [
         (UTM, "+units=m   +proj=utm +ellps=GRS80 +zone=32.0", True, False),
         (KARLSRUHE, "+proj=tmerc +lat_0=49.0000000000001 +lon_0=8.40 +datum=WGS84 +vunits=m", True, False),
@@ -31,12 +31,12 @@ KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +k=1 +x_0=0 +y_0=0 +datum=WGS84"
         ("EPSG:32632", " EPSG:32632\n", True, False),
     ],
 )
-def test_references(one: str, other: str, same: bool, comparable: bool) -> None:
-    assert (geo_reference.is_same_reference(one, other), geo_reference.is_conflicting_reference(one, other)) == (
+def test_references(first: str, second: str, same: bool, comparable: bool) -> None:
+    assert (geo_reference.is_same_reference(first, second), geo_reference.is_conflicting_reference(first, second)) == (
         same,
         comparable,
     )
-    assert geo_reference.is_same_reference(other, one) == same
+    assert geo_reference.is_same_reference(second, first) == same
 
 
 def with_reference(text: str | None) -> str:

@@ -22,7 +22,7 @@ LANE = 3.5
 LINE = "<line/>"
 
 
-def one(number: str = "1", y: float = 0.0, *, back: bool = False, rule: str = "", height: float = 0.0) -> str:
+def one_lane_road(number: str = "1", y: float = 0.0, *, back: bool = False, rule: str = "", height: float = 0.0) -> str:
     """Return a road along x of one lane, number -1 as SUMO writes it, whose middle is at y; `back`: its line runs towards -x."""
     at = (100.0, y - LANE / 2, math.pi) if back else (0.0, y + LANE / 2, 0.0)
     return road(
@@ -37,7 +37,7 @@ def one(number: str = "1", y: float = 0.0, *, back: bool = False, rule: str = ""
 def pair(hand: str, gap: float = 0.0, rule: str = "", height: float = 0.0) -> tuple[str, str]:
     """Return two roads, one there and one back, so that vehicles that follow their lines meet as in that traffic."""
     y = (LANE + gap) / 2 * (1 if hand == "lht" else -1)
-    return one("1", y, rule=rule), one("2", -y, back=True, rule=rule, height=height)
+    return one_lane_road("1", y, rule=rule), one_lane_road("2", -y, back=True, rule=rule, height=height)
 
 
 def along(environment: object) -> set[int]:
@@ -89,10 +89,10 @@ def test_a_rule_that_the_layout_contradicts_is_said_and_not_counted(hand: str, r
 
 def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
     for side, way in (("rht", 1), ("lht", -1)):
-        seen = load(one(), voted_handedness=side)
+        seen = load(one_lane_road(), voted_handedness=side)
         assert (seen.handedness_source, seen.lanes_source, along(seen)) == ("default", "traces", {way})
         assert "handedness_default" in checks(seen)
-        given = load(one(), handedness="lht", voted_handedness=side)
+        given = load(one_lane_road(), handedness="lht", voted_handedness=side)
         assert (given.handedness, given.handedness_source, along(given)) == ("lht", "option", {way})
         doubts = [row["message"] for row in rows(given, "map_quality") if row["check_id"] == "handedness_disagrees"]
         assert doubts == (
@@ -105,12 +105,12 @@ def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
                 )
             ]
         )
-        ids = {load(one(), voted_handedness=s).environment_id for s in (side, "rht", None)}
+        ids = {load(one_lane_road(), voted_handedness=s).environment_id for s in (side, "rht", None)}
         assert len(ids) == (1 if side == "rht" else 2)
     # without traces as the standard has it
-    assert along(load(one(), handedness="lht")) == along(load(one(rule="LHT"))) == {-1}
-    assert load(one(rule="LHT")).lanes_source == "attribute"
-    doubted = load(one(rule="LHT"), handedness="rht", voted_handedness="lht")
+    assert along(load(one_lane_road(), handedness="lht")) == along(load(one_lane_road(rule="LHT"))) == {-1}
+    assert load(one_lane_road(rule="LHT")).lanes_source == "attribute"
+    doubted = load(one_lane_road(rule="LHT"), handedness="rht", voted_handedness="lht")
     assert (doubted.handedness, along(doubted)) == ("rht", {-1})
 
 
@@ -118,8 +118,8 @@ def test_not_far_off_nor_above_nor_the_same_way() -> None:
     apart = (
         pair("lht", 20.0),
         pair("lht", height=5.0),
-        (one("1", 0.0), one("2", LANE)),
-        (one("1", 0.0), one("2", 1.0, back=True)),
+        (one_lane_road("1", 0.0), one_lane_road("2", LANE)),
+        (one_lane_road("1", 0.0), one_lane_road("2", 1.0, back=True)),
     )
     for roads in apart:
         assert "no lane has a lane of the other direction beside it" in _default(load(*roads, voted_handedness="rht"))
@@ -171,7 +171,7 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
     ):
         wrong.doubts_on_map(log, wrong.find(log)[0])
 
-    alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
+    alone = MapSource("small.xodr", xodr(one_lane_road("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
     path.write_bytes(alone.content)
     for said, source in (("auto", "default"), ("lht", "option")):
         library = MapLibrary(DriveInput(map=path, handedness=said))

@@ -57,14 +57,14 @@ def maps() -> list[object]:
     return [*(ROOT / name for name in FIXTURES), *SHARED]
 
 
-def opened(name: Path | str) -> duckdb.DuckDBPyConnection:
+def open_map(name: Path | str) -> duckdb.DuckDBPyConnection:
     return loaded(shared(name) if isinstance(name, str) else name)
 
 
 @pytest.mark.parametrize("name", maps(), ids=str)
 def test_every_shape_has_a_place(name: Path | str) -> None:
     """To a shape that is empty or has a coordinate of NaN, DuckDB 1.5.5 says the distance 0, which is that of a contact."""
-    con = opened(name)
+    con = open_map(name)
     columns = con.execute(
         "SELECT table_name, column_name FROM duckdb_columns() WHERE data_type LIKE 'GEOMETRY%'"
     ).fetchall()
@@ -75,7 +75,7 @@ def test_every_shape_has_a_place(name: Path | str) -> None:
 
 @pytest.mark.parametrize("name", maps(), ids=str)
 def test_areas_are_those_of_the_lanes(name: Path | str) -> None:
-    con = opened(name)
+    con = open_map(name)
     n, made, valid, worst = con.execute(
         "SELECT count(*), count(geom), bool_and(ST_IsValid(geom)), max(abs(ST_Area(geom) - area_m2) / area_m2) FROM lanelet"
     ).fetchall()[0]
@@ -90,7 +90,7 @@ def test_areas_are_those_of_the_lanes(name: Path | str) -> None:
 
 @pytest.mark.parametrize("name", SHARED)
 def test_crossings_and_stop_lines_lie_across_their_lanes(name: str) -> None:
-    con = opened(name)
+    con = open_map(name)
     crossings = con.execute(
         "SELECT ST_Area(c.geom), (c.s_end_m - c.s_start_m) * l.width_m, ST_Covers(ST_Buffer(l.geom, 0.001), c.geom) "
         "FROM crossing c JOIN lanelet l USING (environment_id, lanelet_id)"
@@ -110,7 +110,7 @@ def test_crossings_and_stop_lines_lie_across_their_lanes(name: str) -> None:
 
 @pytest.mark.parametrize("name", FIXTURES[:2])
 def test_junctions_and_roads_are_the_ground_of_their_lanes(name: str) -> None:
-    con = opened(ROOT / name)
+    con = open_map(ROOT / name)
     lanes = "SELECT sum(area_m2), max(area_m2) FROM lanelet WHERE drivable AND {}"
     for table, key in (("junction_area", "junction_id"), ("road_surface", "road_id")):
         found = con.execute(f"SELECT {key}, ST_Area(geom) FROM {table}").fetchall()
@@ -130,15 +130,17 @@ places = st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(-1.3, 1.
 @pytest.mark.parametrize("name", FIXTURES)
 @given(places)
 @settings(max_examples=25, deadline=None)
-def test_the_grid_finds_the_lanes_that_contain_a_point(name: str, found: list[tuple[float, float, float]]) -> None:
+def test_the_grid_finds_the_lanes_that_contain_a_point(
+    name: str, drawn_places: list[tuple[float, float, float]]
+) -> None:
     """Places are drawn by lanelet, share of its length, and offset in half widths; ST_Intersects is the other opinion."""
-    con = opened(ROOT / name)
+    con = open_map(ROOT / name)
     shapes = con.execute(
         "SELECT lanelet_id, list(x_m ORDER BY k), list(y_m ORDER BY k), list(tx ORDER BY k), list(ty ORDER BY k), "
         "list(half_width_m ORDER BY k) FROM lane_point GROUP BY ALL ORDER BY lanelet_id"
     ).fetchall()
     xs, ys = [], []
-    for which, along, across in found:
+    for which, along, across in drawn_places:
         _, x, y, tx, ty, half = shapes[min(int(which * len(shapes)), len(shapes) - 1)]
         k = min(int(along * (len(x) - 1)), len(x) - 2)
         u = along * (len(x) - 1) - k

@@ -41,7 +41,7 @@ OBSTACLE = (
 )
 
 
-def given(trace: Any) -> list[tuple[str, str, str]]:
+def drive_conditions(trace: Any) -> list[tuple[str, str, str]]:
     return [(row["condition"], row["value"], row["source"]) for row in trace.tables["drive_condition"].to_pylist()]
 
 
@@ -58,7 +58,7 @@ def test_a_scenario_names_its_country_and_the_user_counts_more(
 ) -> None:
     path = tmp_path / "drive.xml"
     path.write_text(scenario(lanelet(1, 0.0), OBSTACLE, benchmark=benchmark))
-    assert given(read_trace(path, DriveInput(ego="7", env=env).ingest_options())) == expected
+    assert drive_conditions(read_trace(path, DriveInput(ego="7", env=env).ingest_options())) == expected
 
 
 @pytest.mark.parametrize(("code", "nation"), [(276, "de"), (826, "gb"), (0, None), (999, None), (None, None)])
@@ -69,14 +69,14 @@ def test_the_country_code_of_an_osi_trace(code: int | None, nation: str | None, 
             frame.country_code = code
     path = osi_log.write(tmp_path / "drive.mcap", osi_log.truths(frames))
     expected = [] if nation is None else [("nation", nation, "trace")]
-    assert given(read_trace(path, DriveInput().ingest_options())) == expected
+    assert drive_conditions(read_trace(path, DriveInput().ingest_options())) == expected
 
 
 def test_the_map_tells_where_the_log_does_not(tmp_path: Path) -> None:
     road_file = tmp_path / "road.xml"
     road_file.write_text(scenario(lanelet(1, 0.0), benchmark="DEU_T-1"))
     _, log = MapLibrary(DriveInput(map=road_file)).find(log_of(states(5.0)))
-    assert given(log) == [("nation", "de", "map")]
+    assert drive_conditions(log) == [("nation", "de", "map")]
 
 
 @pytest.mark.parametrize(

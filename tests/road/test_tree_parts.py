@@ -25,9 +25,9 @@ def boxes(n: int, seed: int = 0) -> Any:
     return shapely.box(x, y, x + 10, y + 10)
 
 
-@pytest.mark.parametrize("most", [1, 50, 1_000_000])
-def test_parts_are_what_one_call_returns(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tree_parts, "PAIRS_PER_PART", most)
+@pytest.mark.parametrize("pairs_per_part", [1, 50, 1_000_000])
+def test_parts_are_what_one_call_returns(pairs_per_part: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tree_parts, "PAIRS_PER_PART", pairs_per_part)
     tree, shapes = shapely.STRtree(boxes(300)), boxes(200, 1)
     for predicate, distance in (("intersects", None), ("dwithin", 3.0)):
         whole = tree.query(shapes, predicate=predicate, distance=distance)

@@ -138,8 +138,8 @@ def raw_map(relative: str) -> tuple[dict[str, Any], dict[str, list[dict[str, Any
     return json.loads(file.read_bytes()), points, tables
 
 
-def line(said: list[dict[str, float]]) -> NDArray[np.float64]:
-    return np.array([[point["x"], point["y"], point["z"]] for point in said])
+def line(points: list[dict[str, float]]) -> NDArray[np.float64]:
+    return np.array([[point["x"], point["y"], point["z"]] for point in points])
 
 
 @pytest.mark.parametrize("relative", MAPS)

@@ -84,20 +84,20 @@ def test_turns_that_a_light_holds_for(direction: str, turns: list[str] | None) -
     assert values(environment, "traffic_signal", "kind turns") == [("traffic_light", turns)]
 
 
-ONE = [lanelet(1, 0.0)]
+ONE_LANELET = [lanelet(1, 0.0)]
 OPPOSITE = [lanelet(1, 0.0, '<adjacentRight ref="2" drivingDir="opposite"/>'), lanelet(2, -3.5)]
 
 
 @pytest.mark.parametrize(
     ("parts", "benchmark", "options", "expected"),
     [
-        (ONE, "ZAM_Test-1", {}, ("rht", "default")),
-        (ONE, "DEU_Test-1", {}, ("rht", "attribute")),
-        (ONE, "C-GBR_Test-1", {}, ("lht", "attribute")),
-        (ONE, "ZAM_Test-1", {"handedness": "lht"}, ("lht", "option")),
+        (ONE_LANELET, "ZAM_Test-1", {}, ("rht", "default")),
+        (ONE_LANELET, "DEU_Test-1", {}, ("rht", "attribute")),
+        (ONE_LANELET, "C-GBR_Test-1", {}, ("lht", "attribute")),
+        (ONE_LANELET, "ZAM_Test-1", {"handedness": "lht"}, ("lht", "option")),
         (OPPOSITE, "ZAM_T-1", {}, ("lht", "lanes")),
         # whoever drives along one-way lanes agrees with them on either side of the road
-        (ONE, "ZAM_Test-1", {"voted_handedness": "lht"}, ("rht", "default")),
+        (ONE_LANELET, "ZAM_Test-1", {"voted_handedness": "lht"}, ("rht", "default")),
     ],
 )
 def test_the_side_driven_on(
@@ -151,7 +151,7 @@ def test_what_cannot_be_a_map_is_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "lanelets", "drivable", "found"),
+    ("name", "lanelets", "drivable", "handedness"),
     [
         ("commonroad/DEU_Gar-1_1_T-1.xml", 5, 5, ("rht", "attribute")),
         ("commonroad/OSC_Overtake-1_1_T-1.xml", 124, 107, ("rht", "lanes")),
@@ -159,11 +159,11 @@ def test_what_cannot_be_a_map_is_refused(text: str) -> None:
         ("commonroad/USA_US101-5_1_T-1.xml", 5, 5, ("rht", "attribute")),
     ],
 )
-def test_real_maps(name: str, lanelets: int, drivable: int, found: tuple[str, str]) -> None:
+def test_real_maps(name: str, lanelets: int, drivable: int, handedness: tuple[str, str]) -> None:
     environment = load_map(read_source(shared(name)))
     widths = values(environment, "lanelet", "width_m", drivable=True)
     assert (environment.tables["lanelet"].num_rows, len(widths)) == (lanelets, drivable)
-    assert hand(environment) == found
+    assert hand(environment) == handedness
     doubts = {
         check for check, severity in values(environment, "map_quality", "check_id severity") if severity != "info"
     }
@@ -187,7 +187,7 @@ def limits(environment: MapTables) -> dict[str, tuple[float | None, str]]:
     }
 
 
-def said(environment: MapTables) -> list[tuple[str, str]]:
+def quality_rows(environment: MapTables) -> list[tuple[str, str]]:
     rows = values(environment, "map_quality", "check_id message")
     return [row for row in rows if row[0] != "handedness_default"]
 
@@ -219,7 +219,7 @@ def test_codes_of_signs_are_those_of_the_country(country: str, code: str, kind: 
     environment = load(scenario(*parts, benchmark=f"{country}_Test-1_1_T-1"))
     assert values(environment, "traffic_signal", "kind") == [kind]
     assert limits(environment) == ({"1": (13.9, "sign")} if kind in {"speed_limit", "speed_zone"} else {})
-    assert [check for check, _ in said(environment)] == ([] if kind else ["unknown_sign"])
+    assert [check for check, _ in quality_rows(environment)] == ([] if kind else ["unknown_sign"])
 
 
 def test_the_least_limit_of_a_lanelet_and_that_of_older_files() -> None:
@@ -233,7 +233,7 @@ def test_the_least_limit_of_a_lanelet_and_that_of_older_files() -> None:
         )
     )
     assert limits(environment) == {"1": (8.0, "sign"), "2": (8.5, "lane"), "3": (8.0, "sign")}
-    assert said(environment) == []
+    assert quality_rows(environment) == []
 
 
 def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
@@ -249,7 +249,7 @@ def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
     slow = lanelet(7, 60.0, "<speedLimit>-1</speedLimit>")
     environment = load(scenario(*lanes, slow, *(sign(name, *elements) for name, elements in signs.items())))
     assert limits(environment) == {"5": (10.0, "sign"), "6": (9.0, "sign")}
-    found = said(environment)
+    found = quality_rows(environment)
     assert [message for check, message in found if check == "invalid_speed"] == [
         "the limit of sign 90 is not used: 50 m/s is more than any sign allows: the value may be in km/h",
         "the limit of sign 91 is not used: it has no number",
@@ -288,7 +288,7 @@ def test_what_is_not_read_is_named() -> None:
             benchmark="USA_Test-1",
         )
     )
-    assert [message for _, message in said(environment)] == [
+    assert [message for _, message in quality_rows(environment)] == [
         "lanelets refer to signs or lights that the map does not contain: 7 (1)",
         "signs with a number and a code that is not known (USA): R9-9 (1): whether they limit the speed is not known",
         "signs and lights to which no lanelet refers apply to no lane: 91",
@@ -318,7 +318,7 @@ def test_a_light_and_a_stop_sign_hold_at_the_stop_line() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "found"),
+    ("name", "limit_counts"),
     [
         ("USA_Lanker-1_1_T-1", {(13.4112, "lane"): 74, (11.176, "lane"): 17}),
         ("USA_Peach-4_8_T-1", {(15.6464, "sign"): 38, (11.176, "sign"): 41}),
@@ -327,10 +327,12 @@ def test_a_light_and_a_stop_sign_hold_at_the_stop_line() -> None:
         ("USA_US101-4_1_T-1", {}),
     ],
 )
-def test_limits_of_real_maps(name: str, found: dict[tuple[float, str], int]) -> None:
+def test_limits_of_real_maps(name: str, limit_counts: dict[tuple[float, str], int]) -> None:
     environment = load_map(read_source(shared(f"commonroad/{name}.xml")))
-    assert Counter((round(limit or 0.0, 4), source) for limit, source in limits(environment).values()) == found
-    assert {check for check, _ in said(environment)} == ({"road_type_contradicted"} if "US101" in name else set())
+    assert Counter((round(limit or 0.0, 4), source) for limit, source in limits(environment).values()) == limit_counts
+    assert {check for check, _ in quality_rows(environment)} == (
+        {"road_type_contradicted"} if "US101" in name else set()
+    )
 
 
 def test_urban_lanelets_of_a_scenario_that_is_tagged_as_of_a_highway_are_of_no_known_type() -> None:

@@ -160,7 +160,7 @@ def test_an_origin_that_cannot_be_is_not_known(shift: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("shape", "place", "what"),
+    ("shape", "place", "phrase"),
     [
         ("<semiTrailerTruckShape>" + TRUCK + "</semiTrailerTruckShape>", (10.5, 0.0), "a truck with its trailer"),
         (f"<rectangle>{SIZE}</rectangle><rectangle>{SIZE}</rectangle>", (None, None), "several shapes"),
@@ -169,13 +169,13 @@ def test_an_origin_that_cannot_be_is_not_known(shift: str, tmp_path: Path) -> No
     ],
 )
 def test_what_is_no_box_has_no_size(
-    shape: str, place: tuple[float | None, float | None], what: str, tmp_path: Path
+    shape: str, place: tuple[float | None, float | None], phrase: str, tmp_path: Path
 ) -> None:
     trace = read(write(tmp_path, turning(shape, yaw_rate=0.0)), ego="1")
     row = at(trace, "1", 1.0)
     assert (row["x_m"], row["y_m"]) == (pytest.approx(place[0]), pytest.approx(place[1]))
     assert (actors(trace)["1"]["length_m"], actors(trace)["1"]["width_m"]) == (None, None)
-    assert quality(trace)["no_box"]["message"].startswith(what)
+    assert quality(trace)["no_box"]["message"].startswith(phrase)
 
 
 def test_a_place_given_as_an_area_is_not_known_and_named(tmp_path: Path) -> None:

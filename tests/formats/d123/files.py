@@ -171,14 +171,19 @@ class Object(NamedTuple):
 
 
 def lane(
-    number: int, left: Sequence[Sequence[float]], right: Sequence[Sequence[float]], *, kind: int = 2, **others: Any
+    number: int,
+    left: Sequence[Sequence[float]],
+    right: Sequence[Sequence[float]],
+    *,
+    kind: int = 2,
+    **more_features: Any,
 ) -> Object:
-    """Return a lane; `others`: other features."""
+    """Return a lane; `more_features` come beside its own, or in their place."""
     left, right = ([[*p, *([0.0] if len(p) == 2 else [])] for p in bound] for bound in (left, right))
     features: dict[str, Any] = {
         "lane_type": kind, "lane_group_id": None, "left_boundary": array_of(left), "right_boundary": array_of(right),
         "centerline": array_of(left), "left_lane_id": None, "right_lane_id": None, "predecessor_ids": [],
-        "successor_ids": [], "speed_limit_mps": None, "outline": array_of([*left, *right[::-1]]), **others,
+        "successor_ids": [], "speed_limit_mps": None, "outline": array_of([*left, *right[::-1]]), **more_features,
     }  # fmt: skip
     return Object(LAYERS["lane"], number, features, shapely.Polygon([*left, *right[::-1]]))
 
@@ -249,7 +254,7 @@ def times(n: int, period_us: int = 100_000, start_us: int = 1_000_000) -> list[i
     return [start_us + k * period_us for k in range(n)]
 
 
-def driven(n: int, speed: float = 10.0, **fields: Any) -> list[Ego]:
+def ego_states(n: int, speed: float = 10.0, **fields: Any) -> list[Ego]:
     """Return an ego that drives along x."""
     return [Ego(t, speed * k * 0.1, 0.0, **fields) for k, t in enumerate(times(n))]
 

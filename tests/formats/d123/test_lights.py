@@ -17,7 +17,7 @@ from tests.formats.d123.files import (
     Ego,
     Frame,
     arrow,
-    driven,
+    ego_states,
     group,
     intersection,
     light_columns,
@@ -35,7 +35,7 @@ Lights = Sequence[tuple[int, Sequence[tuple[int, int]]]]
 
 def write(folder: Path, lights: Lights, **options: Any) -> Path:
     frames = [Frame(t, [Box("p", 50.0, 9.0)]) for t in times(6)]
-    return write_log(folder, frames, driven(6), lights=lights, **options)
+    return write_log(folder, frames, ego_states(6), lights=lights, **options)
 
 
 def light_colours(folder: Path) -> dict[tuple[str, int], str | None]:

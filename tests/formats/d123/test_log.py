@@ -21,8 +21,8 @@ from tests.formats.d123.files import (
     Frame,
     arrow,
     box_columns,
-    driven,
     ego_columns,
+    ego_states,
     times,
     write_log,
 )
@@ -38,7 +38,7 @@ def boxes_of(k: int) -> list[Box]:
 
 def plain(folder: Path, n: int = 12, **options: object) -> Path:
     frames = [Frame(t, boxes_of(k)) for k, t in enumerate(times(n))]
-    return write_log(folder, frames, driven(n), **options)  # type: ignore[arg-type]
+    return write_log(folder, frames, ego_states(n), **options)  # type: ignore[arg-type]
 
 
 def test_a_log_is_read(tmp_path: Path) -> None:
@@ -87,7 +87,7 @@ def test_every_label_is_a_class(tmp_path: Path, enumeration: str) -> None:
     assert sorted(number for number, _ in labels.values()) == list(range(len(labels)))
     boxes = [Box(name, 9.0 * number, 40.0, label=number) for name, (number, _) in labels.items()]
     frames = [Frame(t, boxes) for t in times(3)]
-    trace = read(write_log(tmp_path / "log", frames, driven(3), labels=REGISTRY + enumeration))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(3), labels=REGISTRY + enumeration))
     found = actors(trace)
     for name, (_, word) in labels.items():
         if name == "EGO":
@@ -110,12 +110,12 @@ def test_every_label_is_a_class(tmp_path: Path, enumeration: str) -> None:
 )  # fmt: skip
 def test_labels_of_data_sets(tmp_path: Path, enumeration: str, number: int, word: str | None) -> None:
     frames = [Frame(t, [Box("a", 9, 9, label=number)]) for t in times(3)]
-    trace = read(write_log(tmp_path / "log", frames, driven(3), labels=REGISTRY + enumeration))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(3), labels=REGISTRY + enumeration))
     assert actors(trace)["a"]["actor_class"] == word
 
 
 @pytest.mark.parametrize(
-    ("labels", "number", "what"),
+    ("labels", "number", "phrase"),
     [
         (LABELS, 30, "labels that AV2SensorBoxDetectionLabel does not define (30) at 3 boxes"),
         ("my.own.Labels", 1, "their labels are numbers of my.own.Labels"),
@@ -123,18 +123,18 @@ def test_labels_of_data_sets(tmp_path: Path, enumeration: str, number: int, word
         ("", 1, "their labels are numbers of an enumeration without a name"),
     ],
 )
-def test_a_label_that_is_not_known_is_no_class(tmp_path: Path, labels: str, number: int, what: str) -> None:
+def test_a_label_that_is_not_known_is_no_class(tmp_path: Path, labels: str, number: int, phrase: str) -> None:
     frames = [Frame(t, [Box("a", 9, 9, label=number)]) for t in times(3)]
-    trace = read(write_log(tmp_path / "log", frames, driven(3), labels=labels))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(3), labels=labels))
     assert actors(trace)["a"]["actor_class"] is None
     found = quality(trace)["unknown_label"]
     assert (found["severity"], found["n"]) == ("warning", 3)
-    assert what in found["message"]
+    assert phrase in found["message"]
 
 
 def test_an_ego_whose_id_a_box_has(tmp_path: Path) -> None:
     frames = [Frame(t, [Box("ego", 30, 9)]) for t in times(3)]
-    trace = read(write_log(tmp_path / "log", frames, driven(3)))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(3)))
     assert (set(actors(trace)), egos(trace)) == ({"ego", "ego_vehicle"}, ["ego_vehicle"])
 
 
@@ -142,7 +142,7 @@ def test_frames_without_anybody_are_steps_and_those_without_boxes_are_none(tmp_p
     frames = [Frame(t, boxes_of(k)) for k, t in enumerate(times(6))]
     frames[2] = frames[2]._replace(boxes=())
     frames[5] = frames[5]._replace(boxes=None)
-    trace = read(write_log(tmp_path / "log", frames, driven(6)))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(6)))
     assert [row["t_ns"] // 1_000_000 for row in states(trace, "ego")] == [1000, 1100, 1200, 1300, 1400]
     assert [row["t_ns"] // 1_000_000 for row in states(trace, "p")] == [1000, 1100, 1300, 1400]
     assert any("1 of 6 frames have no boxes" in note for note in trace.notes)
@@ -222,7 +222,7 @@ def test_a_frame_that_points_to_no_row_is_lost(tmp_path: Path) -> None:
 def test_numbers_that_are_none_are_not_known(tmp_path: Path) -> None:
     frames = [Frame(t, [Box("a", math.nan if k == 1 else 9.0 + k, 3.0, (10, 0, 0))]) for k, t in enumerate(times(12))]
     frames[2] = Frame(times(12)[2], [Box("a", 11.0, 3.0, (math.inf, 0, 0), size=(0.0, -1.0, 1.5))])
-    trace = read(write_log(tmp_path / "log", frames, driven(12)))
+    trace = read(write_log(tmp_path / "log", frames, ego_states(12)))
     rows = states(trace, "a")
     assert (rows[1]["x_m"], rows[1]["y_m"]) == (None, 3.0)
     assert rows[2]["vx_mps"] is None
@@ -277,15 +277,15 @@ def test_a_cut_file_is_refused(tmp_path: Path, name: str) -> None:
 
 
 def of_texts() -> dict[str, pa.Array]:
-    return ego_columns(driven(12)) | {"ego_state_se3.imu_se3": pa.array(["x"] * 12)}
+    return ego_columns(ego_states(12)) | {"ego_state_se3.imu_se3": pa.array(["x"] * 12)}
 
 
 @pytest.mark.parametrize(
     ("columns", "metadata", "message"),
     [
         ({"ego_state_se3.timestamp_us": pa.array([1])}, EGO_METADATA, r"no column ego_state_se3\.imu_se3"),
-        (ego_columns(driven(12)), None, "its schema has no 'metadata'"),
-        (ego_columns(driven(12)), {**EGO_METADATA, "center_to_imu_se3": [1.0, 2.0]}, "no pose 'center_to_imu_se3'"),
+        (ego_columns(ego_states(12)), None, "its schema has no 'metadata'"),
+        (ego_columns(ego_states(12)), {**EGO_METADATA, "center_to_imu_se3": [1.0, 2.0]}, "no pose 'center_to_imu_se3'"),
         (ego_columns([]), EGO_METADATA, "no state of the ego"),
         (of_texts(), EGO_METADATA, "is string, not fixed_size_list"),
     ],
@@ -298,7 +298,7 @@ def test_what_is_no_log_of_123d_is_refused(tmp_path: Path, columns: Any, metadat
 
 
 def test_a_log_without_a_frame_that_can_be_used(tmp_path: Path) -> None:
-    folder = write_log(tmp_path / "log", [Frame(t, None) for t in times(3)], driven(3))
+    folder = write_log(tmp_path / "log", [Frame(t, None) for t in times(3)], ego_states(3))
     with pytest.raises(TraceError, match="no frame has the ego and boxes"):
         read(folder)
 
@@ -319,7 +319,7 @@ def test_times_are_utc_only_where_that_is_documented(tmp_path: Path, dataset: st
 def test_a_broken_clock_is_refused(tmp_path: Path) -> None:
     frames = [Frame(t, [Box("p", 9, 9)]) for t in times(3, start_us=1 << 60)]
     with pytest.raises(TraceError, match="the clock or its unit is wrong"):
-        read(write_log(tmp_path / "log", frames, driven(3)))
+        read(write_log(tmp_path / "log", frames, ego_states(3)))
 
 
 @pytest.mark.parametrize(("dataset", "range_m"), [("av2-sensor", 150.0), ("nuscenes", 40.0), ("nuplan", None)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from drivelint.formats.files import identify
-from tests.formats.d123.files import Box, Frame, crosswalk, driven, straight, times, write_log, write_map
+from tests.formats.d123.files import Box, Frame, crosswalk, ego_states, straight, times, write_log, write_map
 from tests.formats.logs import quality, read
 
 LANE = [straight(1, -50, 90, 0.0)]
@@ -13,7 +13,7 @@ LANE = [straight(1, -50, 90, 0.0)]
 
 def write(folder: Path, *, dataset: str = "nuplan", location: str | None = "us-ma-boston") -> Path:
     frames = [Frame(t, [Box("p", 50.0, 9.0)]) for t in times(3)]
-    return write_log(folder, frames, driven(3), dataset=dataset, location=location)
+    return write_log(folder, frames, ego_states(3), dataset=dataset, location=location)
 
 
 def test_a_map_of_its_own(tmp_path: Path) -> None:

@@ -47,9 +47,9 @@ def test_a_line_across_a_bound_does_not_mark_it(tmp_path: Path) -> None:
     assert found["1", "left"] == [(0.0, 40.0, None)]
 
 
-@pytest.mark.parametrize(("other", "word"), [(SOLID, "solid"), (DASHED, None), (UNKNOWN, None)])
-def test_lines_that_disagree(tmp_path: Path, other: int, word: str | None) -> None:
-    lines = [road_line(k, kind, [(0, 1.75), (40, 1.75)]) for k, kind in enumerate((SOLID, other))]
+@pytest.mark.parametrize(("second_kind", "word"), [(SOLID, "solid"), (DASHED, None), (UNKNOWN, None)])
+def test_lines_that_disagree(tmp_path: Path, second_kind: int, word: str | None) -> None:
+    lines = [road_line(k, kind, [(0, 1.75), (40, 1.75)]) for k, kind in enumerate((SOLID, second_kind))]
     assert marks(tmp_path, [straight(1, 0, 40, 0.0), *lines])["1", "left"] == [(0.0, 40.0, word)]
 
 

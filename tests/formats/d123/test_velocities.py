@@ -11,7 +11,7 @@ import pytest
 from drivelint.drive.trace import IngestOptions, Recording
 from drivelint.formats.d123 import reader
 from drivelint.formats.probe import Probe
-from tests.formats.d123.files import Box, Ego, Frame, driven, times, write_log
+from tests.formats.d123.files import Box, Ego, Frame, ego_states, times, write_log
 from tests.formats.logs import quality, read, states
 
 N = 40
@@ -30,7 +30,7 @@ def velocities(recording: Recording, name: str) -> np.ndarray:
 
 def write(folder: Path, boxes: list[list[Box]], **options: object) -> Path:
     frames = [Frame(t, row) for t, row in zip(times(len(boxes)), boxes, strict=True)]
-    return write_log(folder, frames, driven(len(boxes)), **options)  # type: ignore[arg-type]
+    return write_log(folder, frames, ego_states(len(boxes)), **options)  # type: ignore[arg-type]
 
 
 def way(k: int) -> float:

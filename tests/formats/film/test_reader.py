@@ -229,7 +229,7 @@ def test_boxes_without_a_camera_or_of_nobody_are_refused(tmp_path: Path) -> None
 RULES = {1: "ds-vbp-out-of-av", 2: "ds-ov-out-of-av", 3: "ds-av-out-of-ov", 4: "ds-disjoint"}
 
 
-def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
+def truth_by_frame(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
     """Return assertion -> frame -> whether it was kept, None where that is unknown."""
     settings = run.CheckOptions(
         traces=(str(shared(CLIP)),),
@@ -254,7 +254,7 @@ def judged(tmp_path: Path, mapping: str) -> dict[int, dict[int, bool | None]]:
 @pytest.mark.ci
 @pytest.mark.parametrize("mapping", ["video-detections", "video-detections-sampled"])
 def test_the_timeline_of_table_2(tmp_path: Path, mapping: str) -> None:
-    found = judged(tmp_path, mapping)
+    found = truth_by_frame(tmp_path, mapping)
     sampled = range(0, 250, 7)  # pulling out and passing
     for number in (2, 3, 4):
         told = {frame: found[number][frame] for frame in sampled}
@@ -272,7 +272,7 @@ def test_the_timeline_of_table_2(tmp_path: Path, mapping: str) -> None:
 @pytest.mark.ci
 def test_every_frame_with_the_vehicle_in_it_is_judged_by_its_distance(tmp_path: Path) -> None:
     """An independent reading of the same file: whoever is detected nearer than the stopping distance is in danger."""
-    found = judged(tmp_path, "video-detections")
+    found = truth_by_frame(tmp_path, "video-detections")
     mph = 60
     stopping = 0.3 * mph + 0.058 - 0.011 * mph + 0.015 * mph**2
     assert stopping == pytest.approx(71.40, abs=0.005)

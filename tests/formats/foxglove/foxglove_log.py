@@ -131,7 +131,7 @@ def entity(
     yaw: float = 0.0,
     life: float = 0.0,
     frame: str = "map",
-    **other: Any,
+    **fields: Any,
 ) -> dict[str, Any]:
     """Return an entity with one cube of 4.5 x 1.8 x 1.5 m."""
     pose = {
@@ -140,14 +140,14 @@ def entity(
     }
     return {
         "timestamp": stamp(t_s), "frame_id": frame, "id": name, "lifetime": stamp(life),
-        "cubes": [{"pose": pose, "size": {"x": 4.5, "y": 1.8, "z": 1.5}}], **other,
+        "cubes": [{"pose": pose, "size": {"x": 4.5, "y": 1.8, "z": 1.5}}], **fields,
     }  # fmt: skip
 
 
 def scene(
-    t_s: float, *entities: dict[str, Any], gone: tuple[dict[str, Any], ...] = (), topic: str = "/scene"
+    t_s: float, *entities: dict[str, Any], deletions: tuple[dict[str, Any], ...] = (), topic: str = "/scene"
 ) -> Message:
-    return topic, "SceneUpdate", t_s, {"entities": list(entities), "deletions": list(gone)}
+    return topic, "SceneUpdate", t_s, {"entities": list(entities), "deletions": list(deletions)}
 
 
 def deletion(t_s: float, name: str | None = None) -> dict[str, Any]:

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-BOTH = pytest.mark.parametrize("encoding", ["protobuf", "json"])
+BOTH_ENCODINGS = pytest.mark.parametrize("encoding", ["protobuf", "json"])
 T0 = 1000.0
 
 
-def seen(path: Path, messages: list[fox.Message], encoding: str = "protobuf", **options: Any) -> Trace:
+def trace_of(path: Path, messages: list[fox.Message], encoding: str = "protobuf", **options: Any) -> Trace:
     return read(fox.write(path / "scene.mcap", messages, encoding), **{"need_ego": False, **options})
 
 
@@ -33,17 +33,17 @@ def times(trace: Trace, actor: str) -> list[float]:
     return [round(row["t_ns"] / 1e9 - T0, 3) for row in states(trace, actor)]
 
 
-def drive(n: int = 20, **other: Any) -> list[fox.Message]:
+def drive(n: int = 20, **fields: Any) -> list[fox.Message]:
     return [
-        fox.scene(T0 + i / 10, fox.entity("car", T0 + i / 10, i * 1.0, 2.0, yaw=0.0, life=0.15, **other))
+        fox.scene(T0 + i / 10, fox.entity("car", T0 + i / 10, i * 1.0, 2.0, yaw=0.0, life=0.15, **fields))
         for i in range(n)
     ]
 
 
-@BOTH
+@BOTH_ENCODINGS
 def test_boxes(tmp_path: Path, encoding: str) -> None:
     messages = drive(metadata=[{"key": "colour", "value": "car"}, {"key": "Type", "value": "vehicle.truck"}])
-    trace = seen(tmp_path, messages, encoding, ego="car")
+    trace = trace_of(tmp_path, messages, encoding, ego="car")
     car = actors(trace)["car"]
     assert (car["actor_class"], car["length_m"], car["width_m"], car["height_m"]) == ("truck", 4.5, 1.8, 1.5)
     state = at(trace, "car", T0 + 0.5)
@@ -53,33 +53,35 @@ def test_boxes(tmp_path: Path, encoding: str) -> None:
     assert "no velocity in the log" in quality(trace)["velocity_derived"]["message"]
 
 
-@BOTH
+@BOTH_ENCODINGS
 def test_no_ego(tmp_path: Path, encoding: str) -> None:
     with pytest.raises(TraceError, match="use --ego ID"):
-        seen(tmp_path, drive(), encoding, need_ego=True)
+        trace_of(tmp_path, drive(), encoding, need_ego=True)
 
 
-@BOTH
+@BOTH_ENCODINGS
 def test_expired_is_gone(tmp_path: Path, encoding: str) -> None:
     """An entity that stands still is there until its lifetime is over, and not at that moment."""
     messages = [*drive(), fox.scene(T0 + 0.15, fox.entity("parked", T0 + 0.15, 5.0, 9.0, life=0.45))]
-    trace = seen(tmp_path, messages, encoding)
+    trace = trace_of(tmp_path, messages, encoding)
     assert times(trace, "parked") == [0.15, 0.2, 0.3, 0.4, 0.5]
     assert {row["x_m"] for row in states(trace, "parked")} == {5.0}
     assert times(trace, "car")[-1] == 1.9
 
 
-@BOTH
+@BOTH_ENCODINGS
 @pytest.mark.parametrize("name", ["parked", None])
 def test_deleted_is_gone(tmp_path: Path, encoding: str, name: str | None) -> None:
     """For ever means until a later deletion: of itself or of all; one of an earlier time, or of another, does not count."""
     messages = drive()
     messages.append(fox.scene(T0 + 0.15, fox.entity("parked", T0 + 0.15, 5.0, 9.0)))
     messages.append(
-        fox.scene(T0 + 0.2, gone=(fox.deletion(T0 + 0.15, name), fox.deletion(T0 + 0.1), fox.deletion(T0 + 0.2, "x")))
+        fox.scene(
+            T0 + 0.2, deletions=(fox.deletion(T0 + 0.15, name), fox.deletion(T0 + 0.1), fox.deletion(T0 + 0.2, "x"))
+        )
     )
-    messages.append(fox.scene(T0 + 0.45, gone=(fox.deletion(T0 + 0.45, name),)))
-    trace = seen(tmp_path, messages, encoding)
+    messages.append(fox.scene(T0 + 0.45, deletions=(fox.deletion(T0 + 0.45, name),)))
+    trace = trace_of(tmp_path, messages, encoding)
     assert times(trace, "parked") == [0.15, 0.2, 0.3, 0.4]
     assert quality(trace)["entity_held"]["n"] == 3
 
@@ -90,8 +92,8 @@ def test_deleted_and_added_again(tmp_path: Path) -> None:
     for i in range(8):
         t_s = T0 + i / 10
         there = [fox.entity("a", t_s, 1.0 * i)] + ([fox.entity("b", t_s, 0.0, 5.0)] if i < 4 else [])
-        messages.append(fox.scene(t_s, *there, gone=(fox.deletion(t_s),)))
-    trace = seen(tmp_path, messages)
+        messages.append(fox.scene(t_s, *there, deletions=(fox.deletion(t_s),)))
+    trace = trace_of(tmp_path, messages)
     assert times(trace, "a") == [i / 10 for i in range(8)]
     assert times(trace, "b") == [0.0, 0.1, 0.2, 0.3]
     assert "entity_held" not in quality(trace)
@@ -101,7 +103,7 @@ def test_moved_and_no_longer_updated(tmp_path: Path) -> None:
     """Nobody deleted it: it is there, and nobody knows where."""
     messages = drive(20)
     messages += [fox.scene(T0 + i / 10, fox.entity("ghost", T0 + i / 10, i * 1.0, 9.0)) for i in range(5)]
-    trace = seen(tmp_path, messages)
+    trace = trace_of(tmp_path, messages)
     rows = states(trace, "ghost")
     assert [row["x_m"] for row in rows[:5]] == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert times(trace, "ghost")[5:] == [1.0 + i / 10 for i in range(10)]
@@ -110,7 +112,7 @@ def test_moved_and_no_longer_updated(tmp_path: Path) -> None:
     assert (found["n"], found["t_first_ns"]) == (10, round((T0 + 1.0) * 1e9))
 
 
-@BOTH
+@BOTH_ENCODINGS
 def test_frames(tmp_path: Path, encoding: str) -> None:
     """A chain of a transform that is said once and one that moves; the order of messages does not matter."""
     messages = [fox.transform(T0, "map", "odom", 100.0, 50.0, yaw=math.pi / 2)]
@@ -119,7 +121,7 @@ def test_frames(tmp_path: Path, encoding: str) -> None:
         fox.scene(T0 + 0.05 + i / 10, fox.entity("a", T0 + 0.05 + i / 10, 10.0, life=0.1, frame="base"))
         for i in range(20)
     ]
-    trace = seen(tmp_path, messages, encoding)
+    trace = trace_of(tmp_path, messages, encoding)
     state = at(trace, "a", T0 + 0.55)
     assert state["x_m"] == pytest.approx(100.0)
     assert state["y_m"] == pytest.approx(50.0 + 10.0 + 5.5)
@@ -131,12 +133,12 @@ def test_held_goes_with_its_frame_where_it_is_locked(tmp_path: Path, locked: boo
     messages = [fox.transform(T0 + i / 10, "map", "base", i * 1.0) for i in range(21)]
     messages += [fox.scene(T0, fox.entity("a", T0, 10.0, frame="base", frame_locked=locked))]
     messages += drive(11)
-    assert at(seen(tmp_path, messages), "a", T0 + 0.5)["x_m"] == pytest.approx(x)
+    assert at(trace_of(tmp_path, messages), "a", T0 + 0.5)["x_m"] == pytest.approx(x)
 
 
 def test_unresolved_frame(tmp_path: Path) -> None:
     messages = [*drive(), fox.scene(T0 + 1.0, fox.entity("lost", T0 + 1.0, 1.0, frame="lidar", life=0.05))]
-    trace = seen(tmp_path, messages)
+    trace = trace_of(tmp_path, messages)
     assert states(trace, "lost")[0]["x_m"] is None
     found = quality(trace)["frame_unresolved"]
     assert (found["n"], found["t_first_ns"], found["severity"]) == (1, round((T0 + 1.0) * 1e9), "error")
@@ -150,7 +152,7 @@ def test_float_seconds(tmp_path: Path) -> None:
         message[3]["entities"][0]["timestamp"] = (
             {"sec": T0 + i * 0.5, "nsec": 0} if i % 2 else {"sec": int(T0 + i * 0.5), "nsec": 0.0}
         )
-    trace = seen(tmp_path, messages, "json")
+    trace = trace_of(tmp_path, messages, "json")
     assert times(trace, "car") == [i * 0.5 for i in range(20)]
 
 
@@ -186,7 +188,7 @@ def test_no_times(tmp_path: Path) -> None:
     messages = drive()
     for message in messages:
         del message[3]["entities"][0]["timestamp"]
-    trace = seen(tmp_path, messages)
+    trace = trace_of(tmp_path, messages)
     assert times(trace, "car") == [i / 10 for i in range(20)]
     assert "log times of the container are used" in quality(trace)["log_time_used"]["message"]
 
@@ -195,21 +197,21 @@ def test_two_scenes(tmp_path: Path) -> None:
     """Two topics may use one id for two things."""
     other = [(("/lanes", *message[1:])) for message in drive()]
     with pytest.raises(TraceError, match=r"on 2 topics \(/lanes, /scene\): choose one with --topic"):
-        seen(tmp_path, [*drive(), *other])
-    assert len(states(seen(tmp_path, [*drive(), *other], topic="/lanes"))) == 20
+        trace_of(tmp_path, [*drive(), *other])
+    assert len(states(trace_of(tmp_path, [*drive(), *other], topic="/lanes"))) == 20
     with pytest.raises(TraceError, match="no scene on topic '/x'"):
-        seen(tmp_path, drive(), topic="/x")
+        trace_of(tmp_path, drive(), topic="/x")
 
 
 def test_no_box_no_id(tmp_path: Path) -> None:
     messages = drive()
     messages.append(fox.scene(T0 + 2.0, fox.entity("line", T0 + 2.0, 0.0, cubes=[]), fox.entity("", T0 + 2.0, 0.0)))
-    trace = seen(tmp_path, messages)
+    trace = trace_of(tmp_path, messages)
     assert set(actors(trace)) == {"car"}
     assert quality(trace)["no_box"]["n"] == 1
     assert quality(trace)["dropped_row"]["severity"] == "error"
     with pytest.raises(TraceError, match="no entity on '/scene' has a cube and an id"):
-        seen(tmp_path, [fox.scene(T0, fox.entity("line", T0, 0.0, cubes=[]))])
+        trace_of(tmp_path, [fox.scene(T0, fox.entity("line", T0, 0.0, cubes=[]))])
 
 
 def walker(t_s: float, word: str = "pedestrian", **bodies: Any) -> dict[str, Any]:
@@ -268,16 +270,16 @@ def test_what_has_no_class_or_no_body_is_no_road_user(tmp_path: Path, word: str,
 def test_damaged_message(tmp_path: Path) -> None:
     messages = drive()
     messages[7][3]["entities"][0]["cubes"] = "none"
-    found = quality(seen(tmp_path, messages, "json"))["lost_time"]
+    found = quality(trace_of(tmp_path, messages, "json"))["lost_time"]
     assert "topic '/scene', log time 1000700000000 ns" in found["message"]
 
 
-@BOTH
+@BOTH_ENCODINGS
 def test_order_of_messages_changes_nothing(tmp_path: Path, encoding: str) -> None:
     messages = [
         *drive(),
         *[fox.scene(T0 + i / 5, fox.entity("slow", T0 + i / 5, float(i // 3), 9.0)) for i in range(8)],
     ]
-    one, other = seen(tmp_path, messages, encoding), seen(tmp_path, messages[::-1], encoding)
+    one, other = trace_of(tmp_path, messages, encoding), trace_of(tmp_path, messages[::-1], encoding)
     drop = ["drive_id"]
     assert one.tables["actor_state"].drop_columns(drop).equals(other.tables["actor_state"].drop_columns(drop))

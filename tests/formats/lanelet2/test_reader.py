@@ -86,11 +86,11 @@ def test_what_follows_limits_stop_lines_lights_and_crossings() -> None:
     assert span == pytest.approx([22, 25], abs=0.1)
 
 
-@pytest.mark.parametrize("said", ["", "walk", "-5", "inf"])
-def test_a_limit_that_cannot_be_read_is_no_limit_of_zero(said: str) -> None:
+@pytest.mark.parametrize("speed_limit", ["", "walk", "-5", "inf"])
+def test_a_limit_that_cannot_be_read_is_no_limit_of_zero(speed_limit: str) -> None:
     drawing = Drawing()
     left, right = (drawing.way([(0.0, y), (50.0, y)]) for y in (0.0, -3.5))
-    lane = str(drawing.lanelet(left, right, speed_limit=said))
+    lane = str(drawing.lanelet(left, right, speed_limit=speed_limit))
     environment = drawing.load()
     assert values(environment, "speed_limit", "limit_mps source") == [(None, "unread")]
     assert lane in checks(environment)["invalid_speed"]

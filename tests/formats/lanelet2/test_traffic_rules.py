@@ -28,7 +28,7 @@ BY_PEER = {
     "who.osm": {"104": ("driving", True, True), "105": ("driving", True, False)},
     "who2.osm": {"104": ("driving", True, True), "105": ("driving", True, True)},
 }
-OTHERS = {
+SAME_IN_BOTH = {
     "100": ("driving", True, False), "101": ("biking", False, False), "102": ("sidewalk", False, False),
     "103": ("driving", True, False), "106": ("driving", True, False), "107": ("driving", True, False),
     "108": ("driving", True, False), "109": ("driving", True, False), "110": ("driving", True, False),
@@ -50,7 +50,7 @@ def lanes(environment: MapTables) -> dict[str, tuple[str, bool, bool]]:
 def test_who_may_use_the_lanelets_of_a_public_report(name: str) -> None:
     source = read_source(shared(f"{REPORTED}/{name}"))
     found = lanes(load_map(source))
-    assert found == BY_PEER[name] | OTHERS
+    assert found == BY_PEER[name] | SAME_IN_BOTH
     layers, _ = load_map_and_is_local(source, MapOptions(), MapQuality())
     assert len(list(layers.laneletLayer)) == 12
     for lanelet in layers.laneletLayer:

@@ -24,7 +24,7 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from pathlib import Path
 
-OURS = "/ours"
+OUR_TOPIC = "/ours"
 
 
 def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
@@ -35,7 +35,7 @@ def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
         copy_original(original, sink)
         if prepare:
             prepare(sink)
-        channel = sink.add_channel(OURS, "json", Schema(id=0, name="Ours", encoding="jsonschema", data=b"{}"))
+        channel = sink.add_channel(OUR_TOPIC, "json", Schema(id=0, name="Ours", encoding="jsonschema", data=b"{}"))
         times = np.arange(n, dtype=np.uint64) * np.uint64(7_000_000)
         data = b"".join(struct.pack("<BQHIQQ", 5, 24, channel, k, t, t) + b"{}" for k, t in enumerate(times.tolist()))
         sink.add_chunk(data, {channel: np.stack([times, np.arange(n, dtype=np.uint64) * np.uint64(33)], axis=1)})
@@ -45,8 +45,8 @@ def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
     return out
 
 
-def others(found: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
-    return [message for message in found if message[0] != OURS]
+def original_messages(messages: list[tuple[Any, ...]]) -> list[tuple[Any, ...]]:
+    return [message for message in messages if message[0] != OUR_TOPIC]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -57,8 +57,8 @@ def test_every_message_of_every_kind_of_log_is_the_same(tmp_path: Path, kind: st
     assert path.read_bytes() == before
     expected = streaming(path)
     assert len(expected) == 60
-    assert others(streaming(out)) == expected
-    assert others(seeking(out)) == expected
+    assert original_messages(streaming(out)) == expected
+    assert original_messages(seeking(out)) == expected
     assert streaming(out, log_time_order=False)[:60] == streaming(path, log_time_order=False)
     assert verify(out).message_count == 65
 
@@ -81,7 +81,11 @@ def test_attachments_and_metadata_are_found_by_the_new_index(tmp_path: Path, kin
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_reader_that_seeks_finds_what_lies_in_a_time_range(tmp_path: Path, kind: str) -> None:
     out = annotated(log(tmp_path / "log.mcap", **KINDS[kind]))
-    for topics, first, end in (([OURS], 7_000_000, 21_000_000), (["/t1", OURS], 5_000_000, 15_000_000), (None, 0, 1)):
+    for topics, first, end in (
+        ([OUR_TOPIC], 7_000_000, 21_000_000),
+        (["/t1", OUR_TOPIC], 5_000_000, 15_000_000),
+        (None, 0, 1),
+    ):
         expected = [m for m in streaming(out) if first <= m[3] < end and (topics is None or m[0] in topics)]
         assert expected
         assert seeking(out, topics=topics, starting_at=first, ending_before=end) == expected
@@ -107,7 +111,7 @@ def test_the_reference_log(tmp_path: Path) -> None:
     path = tmp_path / "reference.mcap"
     path.write_bytes(shared("osi/osi_centerline_example.mcap").read_bytes())
     out = annotated(path)
-    assert others(seeking(out)) == seeking(path)
+    assert original_messages(seeking(out)) == seeking(path)
     assert len(seeking(path)) == 91
     verify(out)
 
@@ -116,8 +120,8 @@ def test_loose_messages_become_chunks_that_are_not_too_large(tmp_path: Path, mon
     monkeypatch.setattr("drivelint.formats.mcap.part_copy.BYTES_PER_CHUNK_OF_LOOSE_MESSAGES", 500)
     path = log(tmp_path / "log.mcap", use_chunking=False)
     out = annotated(path)
-    assert others(streaming(out)) == streaming(path)
-    assert others(seeking(out)) == streaming(path)
+    assert original_messages(streaming(out)) == streaming(path)
+    assert original_messages(seeking(out)) == streaming(path)
     assert verify(out).chunk_count > 5
 
 
@@ -135,8 +139,8 @@ def test_chunks_and_loose_messages_in_one_log(tmp_path: Path) -> None:
     path.write_bytes(mixed)
     assert len(streaming(path)) == 180
     out = annotated(path)
-    assert others(streaming(out, log_time_order=False)) == streaming(path, log_time_order=False)
-    assert sorted(others(seeking(out))) == sorted(streaming(path))
+    assert original_messages(streaming(out, log_time_order=False)) == streaming(path, log_time_order=False)
+    assert sorted(original_messages(seeking(out))) == sorted(streaming(path))
     assert verify(out).message_count == 185
 
 
@@ -148,7 +152,7 @@ def test_a_summary_that_counts_wrongly_is_not_believed(tmp_path: Path) -> None:
     path.write_bytes(data)
     out = annotated(path)
     assert verify(out).message_count == 65
-    assert others(streaming(out)) == streaming(path)
+    assert original_messages(streaming(out)) == streaming(path)
 
 
 @pytest.mark.parametrize("opcode", [Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS])
@@ -165,9 +169,9 @@ def test_a_damaged_summary_is_not_used(tmp_path: Path, opcode: Opcode, kind: str
     data[at : at + 2] = damage
     path.write_bytes(data)
     out = annotated(path)
-    assert others(streaming(out)) == expected
+    assert original_messages(streaming(out)) == expected
     if kind != "no CRCs" or damage != b"zz":
-        assert others(seeking(out)) == expected
+        assert original_messages(seeking(out)) == expected
 
 
 def test_an_attachment_that_cannot_be_read_is_named_by_its_place(tmp_path: Path) -> None:
@@ -197,7 +201,7 @@ def test_a_message_index_that_is_not_behind_its_chunk_is_found_anew(tmp_path: Pa
     path.write_bytes(data[: stray.at] + private + data[stray.at :])
     out = annotated(path)
     assert verify(out).message_count == 65
-    assert others(streaming(out)) == streaming(path)
+    assert original_messages(streaming(out)) == streaming(path)
 
 
 def test_ids_are_chosen_among_the_free_ones(tmp_path: Path) -> None:
@@ -211,7 +215,7 @@ def test_ids_are_chosen_among_the_free_ones(tmp_path: Path) -> None:
     with out.open("rb") as file:
         summary = SeekingReader(file).get_summary()
     assert summary is not None
-    (ours,) = (c for c in summary.channels.values() if c.topic == OURS)
+    (ours,) = (c for c in summary.channels.values() if c.topic == OUR_TOPIC)
     before = {r.body[:2] for r in records(path.read_bytes()) if r.opcode == Opcode.CHANNEL}
     assert struct.pack("<H", ours.id) not in before
     assert 0 < ours.schema_id < 65_535
@@ -266,7 +270,7 @@ def test_bytes_behind_the_end_are_no_part_of_the_log(tmp_path: Path) -> None:
     expected = streaming(path)
     path.write_bytes(path.read_bytes() + b"\0" * 100)
     out = annotated(path)
-    assert others(streaming(out)) == expected
+    assert original_messages(streaming(out)) == expected
     verify(out)
 
 

@@ -67,7 +67,7 @@ def missing_times(trace: Trace, whole: Path) -> list[int]:
     return sorted({t for _, t in rows(read(whole)).keys() - rows(trace).keys()})
 
 
-def lost(trace: Trace, t_ns: int) -> bool:
+def is_lost(trace: Trace, t_ns: int) -> bool:
     return any(
         (row["t_first_ns"] is None or row["t_first_ns"] < t_ns)
         and (row["t_last_ns"] is None or t_ns < row["t_last_ns"])
@@ -78,7 +78,7 @@ def lost(trace: Trace, t_ns: int) -> bool:
 def assert_missing_is_lost(trace: Trace, whole: Path) -> None:
     missing = missing_times(trace, whole)
     assert missing
-    assert all(lost(trace, t) for t in missing)
+    assert all(is_lost(trace, t) for t in missing)
 
 
 def test_cut_within_a_chunk(whole: Path) -> None:
@@ -190,7 +190,7 @@ def test_a_damaged_record_head_costs_one_chunk(whole: Path, place: int, new: byt
     trace = read(put(whole, replaced(data, begin + place, new)))
     gone = missing_times(trace, whole)
     assert 0 < len(gone) < 6
-    assert all(lost(trace, t) for t in gone)
+    assert all(is_lost(trace, t) for t in gone)
     kept = rows(read(whole))
     assert all(kept[key] == row for key, row in rows(trace).items())
 
@@ -219,7 +219,7 @@ def test_messages_without_chunks(flat: Path) -> None:
     begin, _ = places(data, MESSAGE)[10]
     trace = read(put(flat, replaced(data, begin + 3, b"\xff\xff")))
     assert missing_times(trace, flat) == [10 * PERIOD_NS]
-    assert lost(trace, 10 * PERIOD_NS)
+    assert is_lost(trace, 10 * PERIOD_NS)
     assert findings(trace)["unprotected"][0]["n"] == N - 1
 
 
@@ -324,11 +324,11 @@ def test_nothing_is_missing_unsaid_and_nothing_else_is_read(whole: Path, changes
     )
     checks = findings(trace)
     for t in sorted({t for _, t in expected.keys() - found.keys()}):
-        assert lost(trace, t) or "index_mismatch" in checks, f"{t}: {list(checks)}"
+        assert is_lost(trace, t) or "index_mismatch" in checks, f"{t}: {list(checks)}"
     assert log(trace)["n_states"] == len(found)
 
 
-def differs_at_an_end(trace: Trace, key: tuple[str, int], row: dict[str, Any], other: dict[str, Any]) -> bool:
+def differs_at_an_end(trace: Trace, key: tuple[str, int], row: dict[str, Any], damaged_row: dict[str, Any]) -> bool:
     """What is derived over time may differ beside a loss; what the log says may not."""
     said = ("actor_id", "t_ns", "x_m", "y_m", "z_m", "yaw_rad", "indicator", "brake_light")
-    return all(row[name] == other[name] for name in said) and bool(findings(trace).get("lost_time"))
+    return all(row[name] == damaged_row[name] for name in said) and bool(findings(trace).get("lost_time"))

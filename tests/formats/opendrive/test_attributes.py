@@ -175,7 +175,7 @@ VALIDITY = '<validity fromLane="-2" toLane="-2"/>'
 
 
 @pytest.mark.parametrize(
-    ("orientation", "inside", "held"),
+    ("orientation", "inside", "lane_places"),
     [
         ("+", "", [("1.0.-1", 30.0), ("1.0.-2", 30.0)]),
         ("-", "", [("1.0.1", 70.0)]),
@@ -185,10 +185,10 @@ VALIDITY = '<validity fromLane="-2" toLane="-2"/>'
     ],
 )
 def test_signals_hold_for_the_lanes_of_their_direction_and_validity(
-    orientation: str, inside: str, held: list[tuple[str, float]]
+    orientation: str, inside: str, lane_places: list[tuple[str, float]]
 ) -> None:
     environment = with_signals(signal(30, orientation, inside), lanes=TWO_WAYS)
-    assert values(environment, "traffic_signal", "lanelet_id lane_s_m") == held
+    assert values(environment, "traffic_signal", "lanelet_id lane_s_m") == lane_places
     assert values(environment, "traffic_signal", "kind country x_m y_m")[0] == ("stop", "de", 30.0, -5.0)
     assert ("signal_orientation" in checks(environment)) == (bool(inside) and orientation == "-")
 
@@ -309,7 +309,7 @@ FOUR_LANES = section(0, *(lane(n) for n in (2, 1, -1, -2)))  # 3.5 m wide each
 
 
 @pytest.mark.parametrize(
-    ("orientation", "t", "width", "validity", "held"),
+    ("orientation", "t", "width", "validity", "lane_names"),
     [
         ("-", "0", "3.5", "", ["1.0.1", "1.0.2"]),  # drawn beside the reference line on which it is placed
         ("-", "0", "14", "", ["1.0.1", "1.0.2"]),
@@ -331,12 +331,12 @@ FOUR_LANES = section(0, *(lane(n) for n in (2, 1, -1, -2)))  # 3.5 m wide each
     ],
 )
 def test_a_painted_stop_line_holds_for_the_lanes_of_its_orientation_and_validity(
-    orientation: str, t: str, width: str, validity: tuple[int, int] | str, held: list[str]
+    orientation: str, t: str, width: str, validity: tuple[int, int] | str, lane_names: list[str]
 ) -> None:
     inside = f'<validity fromLane="{validity[0]}" toLane="{validity[1]}"/>' if validity else ""
     environment = with_signals(signal(70, orientation, inside, type="294", t=t, width=width), lanes=FOUR_LANES)
     found = dict(values(environment, "stop_line", "lanelet_id lane_s_m"))
-    assert found == {name: 70.0 if "-" in name else 30.0 for name in held}
+    assert found == {name: 70.0 if "-" in name else 30.0 for name in lane_names}
     assert ("signal_orientation" in checks(environment)) == ((orientation, t) == ("-", "-3.5"))
 
 

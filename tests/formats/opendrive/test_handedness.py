@@ -33,7 +33,7 @@ def test_the_option_comes_first() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told", "remedy"),
+    ("options", "sides", "remedy"),
     [
         ({"handedness": "lht", "voted_handedness": "rht"}, ("--handedness says lht, ", "rht", "lht"), "leave the option out, or set rht"),
         ({"handedness": "rht", "voted_handedness": "lht"}, ("--handedness says rht, ", "lht", "rht"), "give --handedness lht"),
@@ -41,9 +41,9 @@ def test_the_option_comes_first() -> None:
     ],
 )  # fmt: skip
 def test_a_doubt_says_what_would_have_the_other_side(
-    options: dict[str, str], told: tuple[str, str, str], remedy: str
+    options: dict[str, str], sides: tuple[str, str, str], remedy: str
 ) -> None:
-    option, traces, used = told
+    option, traces, used = sides
     (message,) = messages(load(road(attributes='rule="RHT"'), **options), "handedness_disagrees")
     assert message == (
         f"{option}the rule attribute of 1 road says rht, the traces fit {traces}: {used} is used. "

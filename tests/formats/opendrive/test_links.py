@@ -25,18 +25,18 @@ def line(x: float, y: float = 0.0, heading: float = 0.0, length: float = 100.0) 
     return f'<geometry s="0" x="{x}" y="{y}" hdg="{heading}" length="{length}"><line/></geometry>'
 
 
-def joined(end: str, other: str, contact: str, kind: str = "road") -> str:
+def link_element(end: str, element_id: str, contact: str, kind: str = "road") -> str:
     at = f' contactPoint="{contact}"' if contact else ""
-    return f'<{end} elementType="{kind}" elementId="{other}"{at}/>'
+    return f'<{end} elementType="{kind}" elementId="{element_id}"{at}/>'
 
 
 def two_roads(
     first: str, second: str, contact: str = "start", *, back: str | None = None, at: str = line(100)
 ) -> MapTables:
     """Return road 1 that leads to road 2 with these lanes; `back`: the end of road 1 to which road 2 leads with its end."""
-    link = "" if back is None else joined("successor", "1", back)
+    link = "" if back is None else link_element("successor", "1", back)
     return load(
-        road("1", lanes=section(0, first), link=joined("successor", "2", contact)),
+        road("1", lanes=section(0, first), link=link_element("successor", "2", contact)),
         road("2", at, lanes=section(0, second), link=link),
     )
 
@@ -57,8 +57,8 @@ def test_one_link_whoever_declares_it(told_by: str) -> None:
     first = linked(-1, successor=-1) if told_by != "second" else linked(-1)
     second = linked(-1, predecessor=-1) if told_by != "first" else linked(-1)
     environment = load(
-        road("1", lanes=section(0, first), link=joined("successor", "2", "start")),
-        road("2", line(100), lanes=section(0, second), link=joined("predecessor", "1", "end")),
+        road("1", lanes=section(0, first), link=link_element("successor", "2", "start")),
+        road("2", line(100), lanes=section(0, second), link=link_element("predecessor", "1", "end")),
     )
     assert set(links(environment)) == {("1.0.-1", "2.0.-1")}
     assert checks(environment).keys() == {"handedness_default"}
@@ -67,8 +67,8 @@ def test_one_link_whoever_declares_it(told_by: str) -> None:
 @pytest.mark.parametrize("contact", ["end", ""])
 def test_roads_that_meet_end_to_end_swap_the_sign_of_their_lanes(contact: str) -> None:
     environment = load(
-        road("1", lanes=section(0, linked(-1, successor=1), linked(1, successor=-1)), link=joined("successor", "2", contact)),
-        road("2", FACING, lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)), link=joined("successor", "1", "end")),
+        road("1", lanes=section(0, linked(-1, successor=1), linked(1, successor=-1)), link=link_element("successor", "2", contact)),
+        road("2", FACING, lanes=section(0, linked(1, successor=-1), linked(-1, successor=1)), link=link_element("successor", "1", "end")),
     )  # fmt: skip
     assert set(links(environment)) == {("1.0.-1", "2.0.1"), ("2.0.-1", "1.0.1")}
     assert "link_gap" not in checks(environment)
@@ -87,8 +87,10 @@ def junction(contact: str, to: int, connecting: str) -> tuple[str, str, str, str
         f'<connection incomingRoad="1" connectingRoad="10" contactPoint="{contact}"><laneLink from="-1" to="{to}"/>'
     )
     return (
-        road("1", lanes=section(0, lane(-1), lane(1)), link=joined("successor", "9", "", "junction")),
-        road("2", line(120), lanes=section(0, lane(-1), lane(1)), link=joined("predecessor", "9", "", "junction")),
+        road("1", lanes=section(0, lane(-1), lane(1)), link=link_element("successor", "9", "", "junction")),
+        road(
+            "2", line(120), lanes=section(0, lane(-1), lane(1)), link=link_element("predecessor", "9", "", "junction")
+        ),
         connecting,
         f'<junction id="9">{connection}</connection></junction>',
     )
@@ -97,11 +99,11 @@ def junction(contact: str, to: int, connecting: str) -> tuple[str, str, str, str
 def test_junctions_entered_at_the_start_and_at_the_end_of_the_connecting_road() -> None:
     along = road(
         "10", line(100, length=20), section(0, linked(-1, -1, -1)), 20,
-        joined("predecessor", "1", "end") + joined("successor", "2", "start"), junction="9",
+        link_element("predecessor", "1", "end") + link_element("successor", "2", "start"), junction="9",
     )  # fmt: skip
     against = road(
         "10", line(120, heading=math.pi, length=20), section(0, linked(1, -1, -1)), 20,
-        joined("predecessor", "2", "start") + joined("successor", "1", "end"), junction="9",
+        link_element("predecessor", "2", "start") + link_element("successor", "1", "end"), junction="9",
     )  # fmt: skip
     for contact, to, connecting in (("start", -1, along), ("end", 1, against)):
         environment = load(*junction(contact, to, connecting))
@@ -129,8 +131,8 @@ def test_the_nearer_end_is_taken_where_nobody_says() -> None:
 def test_turn_is_the_heading_change_over_the_lane_entered() -> None:
     bend = '<geometry s="0" x="100" y="0" hdg="0" length="20"><arc curvature="0.05"/></geometry>'
     parts = (
-        road("1", lanes=section(0, linked(-1, successor=-1)), link=joined("successor", "2", "start")),
-        road("2", bend, section(0, linked(-1, predecessor=-1)), 20, joined("predecessor", "1", "end")),
+        road("1", lanes=section(0, linked(-1, successor=-1)), link=link_element("successor", "2", "start")),
+        road("2", bend, section(0, linked(-1, predecessor=-1)), 20, link_element("predecessor", "1", "end")),
     )
     assert values(load(*parts), "lane_link", "turn_rad") == [1.0]
     back = load(*parts, handedness="lht")
@@ -139,9 +141,9 @@ def test_turn_is_the_heading_change_over_the_lane_entered() -> None:
 
 def test_a_link_to_a_lane_or_road_that_is_missing_is_named() -> None:
     lanes = section(0, linked(-1, successor=-4), linked(-2, successor=-2))
-    gone = load(road("1", lanes=lanes, link=joined("successor", "2", "start")), road("2", line(100)))
+    gone = load(road("1", lanes=lanes, link=link_element("successor", "2", "start")), road("2", line(100)))
     assert checks(gone)["missing_link"] == ["1.0.-1", "1.0.-2"]
-    nowhere = load(road(lanes=section(0, linked(-1, successor=-1)), link=joined("successor", "77", "start")))
+    nowhere = load(road(lanes=section(0, linked(-1, successor=-1)), link=link_element("successor", "77", "start")))
     assert checks(nowhere)["missing_link"] == ["1.0.-1"]
     wrong = '<junction id="9"><connection id="0" incomingRoad="1" connectingRoad="5" contactPoint="start"/></junction>'
     assert checks(load(road(), wrong))["missing_link"] == ["5"]

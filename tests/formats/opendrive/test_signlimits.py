@@ -27,7 +27,7 @@ def limits(environment: Any) -> list[tuple[str, float, float, float | None, str]
 FIFTY = {"type": "274", "value": "50", "unit": "km/h"}
 
 
-def joined(*signs: str, recorded: str = "", first: str = "") -> Any:
+def two_roads(*signs: str, recorded: str = "", first: str = "") -> Any:
     """Two roads of 100 m, one after the other; the signs stand on the first."""
     one, two = (
         (
@@ -43,23 +43,23 @@ def joined(*signs: str, recorded: str = "", first: str = "") -> Any:
 
 
 def test_signs_give_limits_where_the_map_records_none() -> None:
-    environment = joined(signal(30, **FIFTY), signal(60, type="274", value="30", unit="mph"))
+    environment = two_roads(signal(30, **FIFTY), signal(60, type="274", value="30", unit="mph"))
     assert limits(environment) == [
         ("1.0.-1", 30.0, 60.0, 50.0, "sign"), ("1.0.-1", 60.0, 100.0, 48.28, "sign"), ("2.0.-1", 0.0, 100.0, 48.28, "sign"),
     ]  # fmt: skip
 
 
 def test_a_limit_ends_at_the_sign_that_ends_it_and_a_recorded_one_counts_instead() -> None:
-    assert limits(joined(signal(30, **FIFTY), signal(60, type="278"))) == [("1.0.-1", 30.0, 60.0, 50.0, "sign")]
+    assert limits(two_roads(signal(30, **FIFTY), signal(60, type="278"))) == [("1.0.-1", 30.0, 60.0, 50.0, "sign")]
     recorded = '<type s="0" type="rural"><speed max="100" unit="km/h"/></type>'
-    assert limits(joined(signal(30, **FIFTY), recorded=recorded)) == [
+    assert limits(two_roads(signal(30, **FIFTY), recorded=recorded)) == [
         ("1.0.-1", 30.0, 100.0, 50.0, "sign"), ("2.0.-1", 0.0, 100.0, 100.0, "road_type"),
     ]  # fmt: skip
 
 
 @pytest.mark.parametrize("attributes", [{"value": ""}, {"unit": ""}, {"dynamic": "yes"}])
 def test_a_limit_sign_that_cannot_be_read_gives_an_unread_limit(attributes: dict[str, str]) -> None:
-    environment = joined(signal(30, **{**FIFTY, **attributes}))
+    environment = two_roads(signal(30, **{**FIFTY, **attributes}))
     assert limits(environment) == [("1.0.-1", 30.0, 100.0, None, "unread"), ("2.0.-1", 0.0, 100.0, None, "unread")]
 
 
@@ -176,7 +176,7 @@ def test_a_sign_that_cannot_be_read_makes_the_default_unknown_but_not_the_record
 
 def test_a_sign_holds_on_a_road_that_follows_and_has_the_same_default() -> None:
     def two(second: str) -> Any:
-        environment = joined(signal(30, **FIFTY), recorded=second, first=RURAL)
+        environment = two_roads(signal(30, **FIFTY), recorded=second, first=RURAL)
         return [row[1:] for row in limits(environment) if row[0] == "2.0.-1"]
 
     assert two(RURAL) == [(0.0, 100.0, 50.0, "sign")]

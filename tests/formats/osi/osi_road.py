@@ -132,11 +132,11 @@ class Road(Trace):
         return load_map(MapSource("embedded", content), **options)
 
 
-def assign(said: Any, lanes: Sequence[int], logical: Sequence[int]) -> None:
+def assign(classification: Any, lanes: Sequence[int], logical: Sequence[int]) -> None:
     for number in lanes:
-        said.assigned_lane_id.add().value = number
+        classification.assigned_lane_id.add().value = number
     for number in logical:
-        said.logical_lane_assignment.add().assigned_lane_id.value = number
+        classification.logical_lane_assignment.add().assigned_lane_id.value = number
 
 
 def two_way(**options: Any) -> Road:

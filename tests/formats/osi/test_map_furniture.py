@@ -70,11 +70,11 @@ def test_where_a_stop_line_lies(changes: dict[str, Any], lies: bool) -> None:
     assert warned(environment) == ([] if lies or not told else ["stop_line_without_lane"])
 
 
-@pytest.mark.parametrize("lost", ["position", "yaw"])
-def test_a_marking_that_lies_nobody_knows_where_is_told(lost: str) -> None:
+@pytest.mark.parametrize("absent_field", ["position", "yaw"])
+def test_a_marking_that_lies_nobody_knows_where_is_told(absent_field: str) -> None:
     road = two_way()
     base = road.marking(50, (80.0, -1.75, 0.0)).base
-    if lost == "yaw":
+    if absent_field == "yaw":
         base.orientation.yaw = math.nan
     else:
         base.ClearField("position")

@@ -165,7 +165,7 @@ def gap(trace: Trace) -> None:
     trace.truth.lane_boundary[0].boundary_line[2].position.x = 260.0
 
 
-def moved(trace: Trace, x: float) -> None:
+def move_start(trace: Trace, x: float) -> None:
     """Let the lane's right side and the first of its left one begin at `x`."""
     for k in (0, 2):
         trace.truth.lane_boundary[k].boundary_line[0].position.x = x
@@ -177,25 +177,25 @@ def reversed_side(trace: Trace) -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "what"),
+    ("spoil", "phrase"),
     [
         (lambda trace: trace.truth.lane_boundary.pop(1), "not all of its boundaries"),
         (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
         (gap, "43 m between"),
         (reversed_side, "same order"),
-        (lambda trace: moved(trace, math.nan), "an impossible coordinate"),
-        (lambda trace: moved(trace, 1e300), "an impossible coordinate"),
-        (lambda trace: moved(trace, -1e9), "km long"),
+        (lambda trace: move_start(trace, math.nan), "an impossible coordinate"),
+        (lambda trace: move_start(trace, 1e300), "an impossible coordinate"),
+        (lambda trace: move_start(trace, -1e9), "km long"),
     ],
 )
-def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, what: str) -> None:
+def test_a_lane_whose_bounds_make_no_shape_is_left_out_and_named(spoil: Any, phrase: str) -> None:
     trace = bounded()
     trace.bound(21, row(50.0))
     trace.bound(22, row(46.5))
     trace.lane(9, row(48.25), left=21, right=22)
     spoil(trace)
     environment = trace.load(handedness="rht")
-    assert what in dict(values(environment, "map_quality", "lanelet_id message", severity="error"))["1"]
+    assert phrase in dict(values(environment, "map_quality", "lanelet_id message", severity="error"))["1"]
     assert "1" not in lanelets(environment)
 
 

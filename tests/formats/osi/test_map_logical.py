@@ -127,7 +127,7 @@ def test_a_lane_driven_both_ways() -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "what"),
+    ("spoil", "phrase"),
     [
         (lambda road: road.truth.logical_lane[0].left_boundary_id.add(value=99), "the log lacks its left boundary 99"),
         (lambda road: road.truth.logical_lane[0].ClearField("right_boundary_id"), "no right boundary"),
@@ -140,11 +140,11 @@ def test_a_lane_driven_both_ways() -> None:
         (lambda road: setattr(road.truth.logical_lane_boundary[2].boundary_line[2].position, "x", math.nan), "finite"),
     ],
 )
-def test_a_lane_without_a_shape_is_left_out_and_named(spoil: Any, what: str) -> None:
+def test_a_lane_without_a_shape_is_left_out_and_named(spoil: Any, phrase: str) -> None:
     road = two_way()
     spoil(road)
     environment = road.load(handedness="rht")
-    assert what in problems(environment)["1"]
+    assert phrase in problems(environment)["1"]
     assert "1" not in lanelets(environment)
 
 
@@ -184,8 +184,8 @@ def test_speed_limits_for_all_vehicles() -> None:
 
 
 @pytest.mark.parametrize("above", [0.0, 4.0])
-@pytest.mark.parametrize("named", [True, False])
-def test_a_physical_lane_in_the_place_of_a_logical_one_is_no_second_lane(above: float, named: bool) -> None:
+@pytest.mark.parametrize("has_reference", [True, False])
+def test_a_physical_lane_in_the_place_of_a_logical_one_is_no_second_lane(above: float, has_reference: bool) -> None:
     """Above it, it is another road; but not where the logical lane says that it lies on it."""
     road = two_way()
     road.bound(64, [(10.0, 0.0), (90.0, 0.0)])
@@ -193,9 +193,9 @@ def test_a_physical_lane_in_the_place_of_a_logical_one_is_no_second_lane(above: 
     road.lane(70, [(10.0, -1.75), (90.0, -1.75)], left=64, right=65)
     for point in road.truth.lane[0].classification.centerline:
         point.z = above
-    if named:
+    if has_reference:
         road.truth.logical_lane[0].physical_lane_reference.add().physical_lane_id.value = 70
-    assert set(lanelets(road.load())) == ({"1", "2", "3", "70"} if above and not named else {"1", "2", "3"})
+    assert set(lanelets(road.load())) == ({"1", "2", "3", "70"} if above and not has_reference else {"1", "2", "3"})
 
 
 def test_a_bend_keeps_its_width() -> None:

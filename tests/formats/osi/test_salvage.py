@@ -73,7 +73,7 @@ def test_nothing_of_the_first_message_is_refused(tmp_path: Path, whole: bytes) -
 
 
 @pytest.mark.parametrize(
-    ("tail", "told"),
+    ("tail", "phrase"),
     [
         (bytes(500), "a message of 0 bytes at byte"),
         (b"\xff\xff\xff\xff\x0a", "should have 4294967295 bytes"),
@@ -82,11 +82,11 @@ def test_nothing_of_the_first_message_is_refused(tmp_path: Path, whole: bytes) -
     ],
     ids=["zeros", "beyond the end", "one byte", "garbage"],
 )
-def test_what_follows_the_last_message(tmp_path: Path, whole: bytes, tail: bytes, told: str) -> None:
+def test_what_follows_the_last_message(tmp_path: Path, whole: bytes, tail: bytes, phrase: str) -> None:
     frames, ((since, until),), (message,) = salvaged(tmp_path, whole + tail)
     assert (frames, until) == (list(range(N)), None)
     assert since in {(N - 1) * PERIOD_NS, (N - 1) * PERIOD_NS - 1}
-    assert told in message
+    assert phrase in message
     assert f"{len(tail)} bytes from byte {len(whole)} on" in message
 
 

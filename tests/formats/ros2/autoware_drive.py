@@ -65,7 +65,7 @@ def scene() -> Scene:
     return Scene(street.text(), number)
 
 
-def others(t_s: float, n: int, **paths: int) -> Sequence[dict[str, Any]]:
+def road_users(t_s: float, n: int, **paths: int) -> Sequence[dict[str, Any]]:
     """Return a lead, somebody who comes, a pedestrian that stands by, and more that stand far off: n predicted objects."""
     way = SPEED * (t_s - T0)
     standing: dict[str, Any] = {
@@ -94,7 +94,7 @@ def messages(light: int, n: int = 3, shows: Callable[[float], Elements] = changi
         found.append(ros.odometry(t_s, *place, 0.0, SPEED, child="base_link", topic="/localization/kinematic_state"))
         if k % (HERTZ // 10) == 0:
             found += [
-                autoware.predictions(t_s, *others(t_s, n)),
+                autoware.predictions(t_s, *road_users(t_s, n)),
                 autoware.lights(t_s, {light: shows(t_s)}),
                 ros.report("TurnIndicatorsReport", t_s, report=1),
             ]

@@ -119,18 +119,18 @@ def write(path: Path, messages: Iterable[ros.Message], types: dict[str, str] = T
     return ros.write(path, messages, types)
 
 
-def prediction(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **other: Any) -> dict[str, Any]:
+def prediction(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **options: Any) -> dict[str, Any]:
     """Return a PredictedObject, its twist along its own axes; `paths`: how many ways it may go, `poses`: of so many poses each."""
-    path = [ros.pose(x + 0.5 + 5.0 * k, y + 1.0, 0.3) for k in range(other.pop("poses", 3))]
-    paths = [{"path": path, "time_step": {"nanosec": 500_000_000}, "confidence": 0.5}] * other.pop("paths", 1)
-    tracked = ros.track(number, x, y, yaw, speed, **other)
+    path = [ros.pose(x + 0.5 + 5.0 * k, y + 1.0, 0.3) for k in range(options.pop("poses", 3))]
+    paths = [{"path": path, "time_step": {"nanosec": 500_000_000}, "confidence": 0.5}] * options.pop("paths", 1)
+    tracked = ros.track(number, x, y, yaw, speed, **options)
     kinematics = {
         f"initial_{name}": tracked["kinematics"][name] for name in ("pose_with_covariance", "twist_with_covariance")
     }
     return {
         **tracked,
         "kinematics": {**kinematics, "predicted_paths": paths},
-        "shape": other.get("shape", tracked["shape"]),
+        "shape": options.get("shape", tracked["shape"]),
     }
 
 

@@ -21,7 +21,7 @@ TURN = math.pi / 3
 """The heading of those that do not drive east, so that the frames of a velocity differ."""
 
 
-def seen(path: Path, messages: list[ros.Message], **options: Any) -> Trace:
+def trace_of(path: Path, messages: list[ros.Message], **options: Any) -> Trace:
     return read(ros.write(path / "log.mcap", messages), **options)
 
 
@@ -35,18 +35,18 @@ def along(t_s: float, speed: float = 10.0, yaw: float = TURN) -> tuple[float, fl
     return way * math.cos(yaw), way * math.sin(yaw)
 
 
-def others(**other: Any) -> list[ros.Message]:
+def road_users(**options: Any) -> list[ros.Message]:
     """Return a car that comes towards the ego, and a pedestrian."""
     return [
         ros.things(
             t_s,
             ros.thing(9, 100.0 - along(t_s)[0], 100.0 - along(t_s)[1], TURN - math.pi, 10.0),
             ros.thing(12, 5.0, 5.0, classification=4, shape={"type": 3, "dimensions": [1.8, 0.3]}),
-            **other,
+            **options,
         )
         for t_s in ticks()
     ]
 
 
-def ego(dt: float = 0.05, n: int = N, **other: Any) -> list[ros.Message]:
-    return [ros.odometry(t_s, *along(t_s), TURN, 10.0, **other) for t_s in ticks(n, dt)]
+def ego(dt: float = 0.05, n: int = N, **options: Any) -> list[ros.Message]:
+    return [ros.odometry(t_s, *along(t_s), TURN, 10.0, **options) for t_s in ticks(n, dt)]

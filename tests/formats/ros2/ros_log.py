@@ -147,27 +147,27 @@ def encode(name: str, value: dict[str, Any], types: dict[str, str] = BASE, order
         out.extend(b"\0" * (-len(out) % size))
         out.extend(struct.pack(order + code, number))
 
-    def one(kind: str, given: Any) -> None:
+    def put_value(kind: str, content: Any) -> None:
         if kind == "string":
-            data = (given or "").encode() + b"\0"
+            data = (content or "").encode() + b"\0"
             put("I", len(data))
             out.extend(data)
         elif kind in _SCALARS:
-            put(_SCALARS[kind], given or 0)
+            put(_SCALARS[kind], content or 0)
         else:
             for inner, member, array in fields(kind, types):
-                item = (given or {}).get(member)
+                item = (content or {}).get(member)
                 if array is None:
-                    one(inner, item)
+                    put_value(inner, item)
                 elif array == "" or array.startswith("<="):
                     put("I", len(item or []))
                     for each in item or []:
-                        one(inner, each)
+                        put_value(inner, each)
                 else:
                     for each in item or [0] * int(array):
-                        one(inner, each)
+                        put_value(inner, each)
 
-    one(name, value)
+    put_value(name, value)
     return bytes([0, 1 if order == "<" else 0, 0, 0]) + bytes(out)
 
 
@@ -217,12 +217,12 @@ def pose(x: float, y: float, yaw: float = 0.0, z: float = 0.0) -> dict[str, Any]
     return {"position": xyz(x, y, z), "orientation": turned(yaw)}
 
 
-def thing(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **other: Any) -> dict[str, Any]:
+def thing(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **fields: Any) -> dict[str, Any]:
     """Return an Object of the CARLA bridge, a car 4.5 x 1.8 x 1.5 m that drives where it looks."""
     return {
         "id": number, "object_classified": 1, "pose": pose(x, y, yaw),
         "twist": {"linear": xyz(speed * math.cos(yaw), speed * math.sin(yaw))},
-        "shape": {"type": 1, "dimensions": [4.5, 1.8, 1.5]}, "classification": 6, **other,
+        "shape": {"type": 1, "dimensions": [4.5, 1.8, 1.5]}, "classification": 6, **fields,
     }  # fmt: skip
 
 
@@ -239,17 +239,17 @@ def things(t_s: float, *objects: dict[str, Any], topic: str = "/carla/objects", 
 
 
 def odometry(
-    t_s: float, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, *, turning: float = 0.0, **other: Any
+    t_s: float, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, *, turning: float = 0.0, **options: Any
 ) -> Message:
     """Return where the ego is, its twist along its own axes."""
-    topic, log_s = other.pop("topic", "/carla/hero/odometry"), other.pop("log_s", t_s)
+    topic, log_s = options.pop("topic", "/carla/hero/odometry"), options.pop("log_s", t_s)
     content = {
-        "header": header(t_s, other.pop("frame", "map")),
-        "child_frame_id": other.pop("child", "ego_vehicle"),
+        "header": header(t_s, options.pop("frame", "map")),
+        "child_frame_id": options.pop("child", "ego_vehicle"),
         "pose": {"pose": pose(x, y, yaw)},
-        "twist": {"twist": {"linear": other.pop("twist", xyz(speed)), "angular": xyz(0, 0, turning)}},
+        "twist": {"twist": {"linear": options.pop("twist", xyz(speed)), "angular": xyz(0, 0, turning)}},
     }
-    assert not other
+    assert not options
     return topic, "nav_msgs/Odometry", log_s, content
 
 
@@ -263,16 +263,16 @@ def transform(
     return topic, "tf2_msgs/TFMessage", t_s, {"transforms": [item]}
 
 
-def track(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **other: Any) -> dict[str, Any]:
+def track(number: int, x: float, y: float, yaw: float = 0.0, speed: float = 0.0, **options: Any) -> dict[str, Any]:
     """Return an Autoware TrackedObject, its twist along its own axes."""
     kinematics = {
         "pose_with_covariance": {"pose": pose(x, y, yaw)},
         "twist_with_covariance": {"twist": {"linear": xyz(speed)}},
-        "orientation_availability": other.pop("facing", 2),
+        "orientation_availability": options.pop("facing", 2),
     }
     return {
         "object_id": {"uuid": [*range(15), number]},
-        "classification": other.pop("classes", [{"label": 0, "probability": 0.2}, {"label": 1, "probability": 0.8}]),
+        "classification": options.pop("classes", [{"label": 0, "probability": 0.2}, {"label": 1, "probability": 0.8}]),
         "kinematics": kinematics,
         "shape": {"dimensions": xyz(4.5, 1.8, 1.5)},
     }

@@ -53,10 +53,10 @@ def without(messages: list[ros.Message], *kinds: str) -> list[ros.Message]:
     return [message for message in messages if message[1] not in kinds]
 
 
-def lacking(found: Drive) -> dict[str, set[str]]:
+def lacking(drive: Drive) -> dict[str, set[str]]:
     """Return the rules that `check` runs by itself and that cannot be decided, each with what it waits for."""
-    (ego,) = found.egos
-    return {rule.rule_id: set(rule.missing_signals) for rule in ego.cannot if rule.rule_id not in found.drafts}
+    (ego,) = drive.egos
+    return {rule.rule_id: set(rule.missing_signals) for rule in ego.cannot if rule.rule_id not in drive.drafts}
 
 
 @pytest.mark.ci

@@ -83,10 +83,10 @@ def cases(draw: st.DrawFn) -> tuple[dict[str, str], list[dict[str, Any]]]:
     return types, [value("Top") for _ in range(draw(st.integers(1, 3)))]
 
 
-def kept(types: dict[str, str], name: str) -> dict[str, Any]:
+def member_tree(types: dict[str, str], name: str) -> dict[str, Any]:
     """Return a tree of all that is kept: texts in sequences are not."""
     return {
-        member: kept(types, kind) if kind in types else None
+        member: member_tree(types, kind) if kind in types else None
         for kind, member, array in ros.fields(name, types)
         if not (kind == "string" and array is not None)
     }
@@ -117,7 +117,7 @@ def expect(table: cdr.Table, name: str, values: list[dict[str, Any]], types: dic
 def test_any_definition(case: tuple[dict[str, str], list[dict[str, Any]]], order: str) -> None:
     types, values = case
     messages = [ros.encode("p/Top", value, types, order) for value in values]
-    expect(decoder(types, "p/Top", kept(types, "p/Top")).table(log_messages(messages)), "p/Top", values, types)
+    expect(decoder(types, "p/Top", member_tree(types, "p/Top")).table(log_messages(messages)), "p/Top", values, types)
     # what is not kept is stepped over to the byte
     only: dict[str, Any] = {"list": {}}
     assert decoder(types, "p/Top", only).table(log_messages(messages)).children["list"].n == sum(
@@ -164,17 +164,17 @@ def test_an_empty_sequence_pads_nothing() -> None:
     """pybag-sdk 0.13.0 reads what follows one four bytes late (findings/pybag-empty-sequence.sh)."""
     types = {"p/Top": "float64[] gaps\nint32 lane\nint32 vehicles\nfloat64 speed"}
     data = bytes([0, 1, 0, 0]) + struct.pack("<Iii4xd", 0, 2, 7, 20.0)
-    table = decoder(types, "p/Top", kept(types, "p/Top")).table(log_messages([data]))
+    table = decoder(types, "p/Top", member_tree(types, "p/Top")).table(log_messages([data]))
     assert [table.columns[name].tolist() for name in ("lane", "vehicles", "speed")] == [[2], [7], [20.0]]
 
 
-@pytest.mark.parametrize("read", [{"speed": None}, {"objects": {"gap": None}, "speed": None}])
-def test_a_number_behind_an_empty_list_of_messages_is_aligned(read: dict[str, Any]) -> None:
+@pytest.mark.parametrize("members", [{"speed": None}, {"objects": {"gap": None}, "speed": None}])
+def test_a_number_behind_an_empty_list_of_messages_is_aligned(members: dict[str, Any]) -> None:
     """mcap-ros2-support-fast 0.8.0 reads it four bytes early if the listed message ends with eight bytes: a speed of 0."""
     types = {"p/Top": "p/Object[] objects\nfloat64 speed", "p/Object": "uint32 id\nfloat64 gap"}
     alone = bytes([0, 1, 0, 0]) + struct.pack("<I4xd", 0, 20.0)
     beside_another = bytes([0, 1, 0, 0]) + struct.pack("<IIdd", 1, 7, 42.0, 20.0)
-    table = decoder(types, "p/Top", read).table(log_messages([alone, beside_another]))
+    table = decoder(types, "p/Top", members).table(log_messages([alone, beside_another]))
     assert table.columns["speed"].tolist() == [20.0, 20.0]
 
 

@@ -12,7 +12,7 @@ from drivelint.errors import TraceError
 from tests.formats.logs import egos, quality, read
 from tests.formats.ros2 import autoware_log
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, road_users, ticks, trace_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,7 +36,7 @@ def track(trace: Trace) -> dict[str, np.ndarray[Any, Any]]:
 
 
 def test_the_ego_is_that_of_the_same_log_with_odometry(tmp_path: Path) -> None:
-    trace, with_odometry = seen(tmp_path, [*moving(), *others()]), seen(tmp_path, [*ego(), *others()])
+    trace, with_odometry = trace_of(tmp_path, [*moving(), *road_users()]), trace_of(tmp_path, [*ego(), *road_users()])
     found, wanted = track(trace), track(with_odometry)
     for name in wanted:
         assert found[name] == pytest.approx(wanted[name], abs=1e-6), name
@@ -46,13 +46,13 @@ def test_the_ego_is_that_of_the_same_log_with_odometry(tmp_path: Path) -> None:
 
 def test_odometry_comes_first(tmp_path: Path) -> None:
     wrong = [ros.transform(t_s, "map", "base_link", 5000.0) for t_s in ticks()]
-    assert track(seen(tmp_path, [*wrong, *ego(), *others()]))["x_m"].max() < 100.0
+    assert track(trace_of(tmp_path, [*wrong, *ego(), *road_users()]))["x_m"].max() < 100.0
 
 
 def test_static_transforms_are_chained_and_times_are_those_of_the_transforms(tmp_path: Path) -> None:
     """The moving frame is base_footprint, at 7 Hz; the ego's frame is 2 m ahead of it and turned."""
     messages = [*moving("odom", "base_footprint", dt=1 / 7, n=12), still("base_footprint", "base_link", 2.0, 0.1)]
-    found = track(seen(tmp_path, messages))
+    found = track(trace_of(tmp_path, messages))
     t_s = np.array(ticks(12, 1 / 7))
     assert found["t_ns"] == pytest.approx([round(each * 1e9) for each in t_s], abs=1)
     wanted = [(x + 2.0 * math.cos(TURN), y + 2.0 * math.sin(TURN)) for x, y in map(along, t_s)]
@@ -63,7 +63,7 @@ def test_static_transforms_are_chained_and_times_are_those_of_the_transforms(tmp
 def test_the_ego_is_placed_in_the_map(tmp_path: Path) -> None:
     """The localisation moves `odom` in `map`, at another rate."""
     local = [ros.transform(t_s, "map", "odom", 100.0) for t_s in np.arange(T0 - 0.5, T0 + 3.0, 0.13).tolist()]
-    found = track(seen(tmp_path, [*local, *moving("odom"), *others()]))
+    found = track(trace_of(tmp_path, [*local, *moving("odom"), *road_users()]))
     assert found["x_m"] == pytest.approx([100.0 + along(t_s)[0] for t_s in ticks()])
 
 
@@ -73,12 +73,12 @@ def test_the_box_of_the_vehicle_and_the_option_set_the_centre(tmp_path: Path) ->
     ahead = (2.79 + 1.0 - 1.1) / 2
     found = track(read(path))
     assert found["x_m"] == pytest.approx([along(t_s)[0] + ahead * math.cos(TURN) for t_s in ticks()], abs=1e-3)
-    assert "reference_point" in quality(seen(tmp_path, moving()))
+    assert "reference_point" in quality(trace_of(tmp_path, moving()))
 
 
 def test_relayed_transforms_count_once(tmp_path: Path) -> None:
     twice = [message for each in moving() for message in (each, each)]
-    assert len(track(seen(tmp_path, twice))["t_ns"]) == N
+    assert len(track(trace_of(tmp_path, twice))["t_ns"]) == N
 
 
 @pytest.mark.parametrize(
@@ -95,27 +95,27 @@ def test_relayed_transforms_count_once(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_a_broken_chain_is_refused_with_its_reason(tmp_path: Path, messages: list[ros.Message], why: str) -> None:
     with pytest.raises(TraceError, match=why) as error:
-        seen(tmp_path, messages)
+        trace_of(tmp_path, messages)
     assert "\n" not in str(error.value)
 
 
 def test_objects_without_a_chain_have_no_ego(tmp_path: Path) -> None:
     tracked = [ros.tracks(t_s, ros.track(3, 50.0, 9.0)) for t_s in ticks()]
-    trace = seen(tmp_path, [*tracked, *moving(child="camera")], need_ego=False)
+    trace = trace_of(tmp_path, [*tracked, *moving(child="camera")], need_ego=False)
     assert egos(trace) == []
     assert any("no transform leads to base_link" in note and "is not among the actors" in note for note in trace.notes)
 
 
 def test_an_ego_that_is_not_in_the_frame_of_the_objects_is_not_placed(tmp_path: Path) -> None:
     tracked = [ros.tracks(t_s, ros.track(3, 50.0, 9.0)) for t_s in ticks()]
-    trace = seen(tmp_path, [*tracked, *moving("odom")])
+    trace = trace_of(tmp_path, [*tracked, *moving("odom")])
     assert "no transform leads from 'odom' to 'map'" in quality(trace)["frame_unresolved"]["message"]
     assert np.isnan(track(trace)["x_m"]).all()
 
 
 def test_a_hole_of_the_transforms_is_lost_time(tmp_path: Path) -> None:
     kept = [message for k, message in enumerate(moving()) if not 10 <= k < 30]
-    trace = seen(tmp_path, [*kept, *others()])
+    trace = trace_of(tmp_path, [*kept, *road_users()])
     assert "ego_absent" in quality(trace)
     assert np.isfinite(track(trace)["x_m"]).sum() == N - 20
 
@@ -123,7 +123,7 @@ def test_a_hole_of_the_transforms_is_lost_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize("frame", ["chassis", "two/base_link"])
 def test_the_option_chooses_the_frame_of_the_ego(tmp_path: Path, frame: str) -> None:
     far = [ros.transform(t_s, "map", "one/base_link", 5000.0) for t_s in ticks()]
-    trace = seen(tmp_path, [*far, *moving(child=frame), *others()], ego=frame)
+    trace = trace_of(tmp_path, [*far, *moving(child=frame), *road_users()], ego=frame)
     assert egos(trace) == [frame]
     rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] == frame]
     assert [row["x_m"] for row in rows] == pytest.approx([along(t_s)[0] for t_s in ticks()])
@@ -132,17 +132,17 @@ def test_the_option_chooses_the_frame_of_the_ego(tmp_path: Path, frame: str) -> 
 def test_ends_at_which_the_map_is_not_known_are_no_loss(tmp_path: Path) -> None:
     """`odom` in `map` is sent at 5 Hz: at the end its last transform is older than that of the ego."""
     local = [ros.transform(t_s, "map", "odom", 100.0) for t_s in np.arange(T0 + 0.1, T0 + 1.8, 0.2).tolist()]
-    trace = seen(tmp_path, [*local, *moving("odom"), *others()])
+    trace = trace_of(tmp_path, [*local, *moving("odom"), *road_users()])
     assert "frame_unresolved" not in quality(trace)
     assert "ego_absent" not in quality(trace)
     late = [message for message in local if message[2] > T0 + 1.2]
-    assert "frame_unresolved" in quality(seen(tmp_path, [*late, *moving("odom"), *others()]))
+    assert "frame_unresolved" in quality(trace_of(tmp_path, [*late, *moving("odom"), *road_users()]))
 
 
 def test_an_end_longer_than_the_periods_explain_stays_and_is_not_placed(tmp_path: Path) -> None:
     """`odom` in `map` is sent at 20 Hz and ends 0.85 s before the ego; at its start it is a period late."""
     local = [ros.transform(t_s, "map", "odom", 100.0) for t_s in ticks()[1:-17]]
-    trace = seen(tmp_path, [*local, *moving("odom"), *others()])
+    trace = trace_of(tmp_path, [*local, *moving("odom"), *road_users()])
     assert np.isfinite(track(trace)["x_m"]).tolist() == [True] * (N - 18) + [False] * 17
     assert "17 poses cannot be placed" in quality(trace)["frame_unresolved"]["message"]
     assert "no_position" in quality(trace)
@@ -169,8 +169,8 @@ def test_two_writers_of_the_ego_s_frame_are_refused_unless_the_user_chooses_one(
     messages = [message for each in zip(moving(), other, strict=False) for message in each]
     why = "several topics have transforms to 'base_link', and --topic chooses one: /localisation/tf, /tf"
     with pytest.raises(TraceError, match=why):
-        seen(tmp_path, messages)
-    trace = seen(tmp_path, [*messages, *near], topic="/tf")
+        trace_of(tmp_path, messages)
+    trace = trace_of(tmp_path, [*messages, *near], topic="/tf")
     assert track(trace)["x_m"] == pytest.approx([along(t_s)[0] for t_s in ticks()])
     placed = [row["y_m"] for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] != "ego"]
     assert placed == pytest.approx([along(t_s)[1] + 9.0 * math.sin(TURN) for t_s in ticks()])
@@ -178,9 +178,9 @@ def test_two_writers_of_the_ego_s_frame_are_refused_unless_the_user_chooses_one(
 
 def test_the_choice_of_a_static_topic_leaves_no_other_topic_out(tmp_path: Path) -> None:
     messages = [still("map", "odom", 100.0), *moving("odom")]
-    found = track(seen(tmp_path, messages, topic="/tf_static"))
+    found = track(trace_of(tmp_path, messages, topic="/tf_static"))
     assert found["x_m"] == pytest.approx([100.0 + along(t_s)[0] for t_s in ticks()])
-    assert found["x_m"] == pytest.approx(track(seen(tmp_path, messages, topic="/tf"))["x_m"])
+    assert found["x_m"] == pytest.approx(track(trace_of(tmp_path, messages, topic="/tf"))["x_m"])
 
 
 @pytest.mark.ci
@@ -189,7 +189,7 @@ def test_many_child_frames_do_not_take_long(tmp_path: Path) -> None:
     topic, kind, t_s, content = ros.transform(T0, "map", "marker")
     (item,) = content["transforms"]
     markers = [{**item, "child_frame_id": f"marker_{k}"} for k in range(20_000)]
-    found = track(seen(tmp_path, [(topic, kind, t_s, {"transforms": markers}), *moving()]))
+    found = track(trace_of(tmp_path, [(topic, kind, t_s, {"transforms": markers}), *moving()]))
     assert found["x_m"] == pytest.approx([along(t_s)[0] for t_s in ticks()])
 
 
@@ -204,4 +204,4 @@ def test_transforms_are_split_by_their_frames_in_the_order_of_the_log(tmp_path: 
             ros.transform(t_s, "map", "odom", t_s),
         )
     ]
-    assert track(seen(tmp_path, messages))["x_m"] == pytest.approx([t_s + along(t_s)[0] for t_s in ticks()])
+    assert track(trace_of(tmp_path, messages))["x_m"] == pytest.approx([t_s + along(t_s)[0] for t_s in ticks()])

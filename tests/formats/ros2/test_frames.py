@@ -25,12 +25,10 @@ from drivelint.formats.mcap.bag import bag_files
 from drivelint.inspect.content import file_content, size_bytes
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, road_users, ticks, trace_of
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
-
-MOVED = {"x_m": 100.0, "y_m": 50.0}
 
 
 def chain() -> list[ros.Message]:
@@ -45,7 +43,7 @@ def chain() -> list[ros.Message]:
 def test_chain(tmp_path: Path) -> None:
     # it drives with its frame, 10 m/s to the map's north, and says so
     objects = [ros.things(t_s, ros.thing(9, 30.0, 1.0, 0.05, 10.0), frame="lidar") for t_s in ticks(19)]
-    trace = seen(tmp_path, [*chain(), *objects], ego="9")
+    trace = trace_of(tmp_path, [*chain(), *objects], ego="9")
     state = at(trace, "9", T0 + 0.5)
     assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - 1.0, 50.0 + 5.0 + 2.0 + 30.0))
     assert state["yaw_rad"] == pytest.approx(math.pi / 2 + 0.05)
@@ -54,7 +52,7 @@ def test_chain(tmp_path: Path) -> None:
 
 
 def test_odometry_in_odom(tmp_path: Path) -> None:
-    trace = seen(tmp_path, [*chain(), *ego(frame="odom"), *others()])
+    trace = trace_of(tmp_path, [*chain(), *ego(frame="odom"), *road_users()])
     x, y = along(T0 + 1.0)
     state = at(trace, "ego", T0 + 1.0)
     assert (state["x_m"], state["y_m"]) == pytest.approx((100.0 - y, 50.0 + x))
@@ -64,7 +62,7 @@ def test_odometry_in_odom(tmp_path: Path) -> None:
 def test_unresolved_in_part(tmp_path: Path) -> None:
     """Some objects are in a frame of which nothing is known: they are there, and nowhere."""
     lost = [ros.things(t_s, ros.thing(12, 1.0, 2.0), frame="radar") for t_s in ticks()[10:]]
-    trace = seen(tmp_path, [*ego(), *others()[:10], *lost])
+    trace = trace_of(tmp_path, [*ego(), *road_users()[:10], *lost])
     assert {row["x_m"] for row in states(trace, "12")[10:]} == {None}
     found = quality(trace)["frame_unresolved"]
     assert (found["n"], found["t_first_ns"], found["severity"]) == (N - 10, round(ticks()[10] * 1e9), "error")
@@ -75,24 +73,24 @@ def test_not_beyond_the_transforms_times_nor_in_holes(tmp_path: Path) -> None:
     """A transform from 0.5 s to 1.5 s, with a hole of 0.6 s or of 0.4 s in it."""
     objects = [ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]
 
-    def placed(a: float, b: float) -> list[int]:
+    def samples_with_place(a: float, b: float) -> list[int]:
         moving = [
             ros.transform(t_s, "map", "base", t_s)
             for t_s in ticks(201, 0.01)
             if 0.499 <= t_s - T0 <= a + 1e-6 or b - 1e-6 <= t_s - T0 <= 1.501
         ]
-        rows = states(seen(tmp_path, [*ego(), *moving, *objects]), "9")
+        rows = states(trace_of(tmp_path, [*ego(), *moving, *objects]), "9")
         return [i for i, row in enumerate(rows) if row["x_m"] is not None]
 
-    assert placed(1.0, 1.0) == list(range(10, 31))
-    assert placed(0.7, 1.1) == list(range(10, 31))
-    assert placed(0.7, 1.3) == [*range(10, 15), *range(26, 31)]
+    assert samples_with_place(1.0, 1.0) == list(range(10, 31))
+    assert samples_with_place(0.7, 1.1) == list(range(10, 31))
+    assert samples_with_place(0.7, 1.3) == [*range(10, 15), *range(26, 31)]
 
 
 def test_two_parents(tmp_path: Path) -> None:
     both = [ros.transform(t_s, parent, "base", 5.0) for t_s in ticks() for parent in ("map", "odom")]
     objects = [ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]
-    trace = seen(tmp_path, [*ego(), *both, *objects])
+    trace = trace_of(tmp_path, [*ego(), *both, *objects])
     assert {row["x_m"] for row in states(trace, "9")} == {None}
     assert "several frames have the child frame 'base'" in quality(trace)["frame_unresolved"]["message"]
 
@@ -100,7 +98,7 @@ def test_two_parents(tmp_path: Path) -> None:
 def test_a_loop_of_frames_leads_nowhere(tmp_path: Path) -> None:
     loop = [ros.transform(T0, *pair, topic="/tf_static") for pair in (("a", "b"), ("b", "a"))]
     objects = [ros.things(t_s, ros.thing(9, 1.0, 0.0), frame="a") for t_s in ticks()]
-    trace = seen(tmp_path, [*loop, *objects, *ego(frame="site")])
+    trace = trace_of(tmp_path, [*loop, *objects, *ego(frame="site")])
     assert {row["x_m"] for row in states(trace, "9")} == {None}
     assert "no transform leads from 'a' to 'site'" in quality(trace)["frame_unresolved"]["message"]
 
@@ -109,14 +107,14 @@ def test_nothing_placed(tmp_path: Path) -> None:
     """Odometry in a frame that only its own transforms hold, none of them at its time."""
     late = [ros.transform(T0 + 50.0, "map", "odom", 1.0)]
     with pytest.raises(TraceError, match=r"nothing can be placed: .* 'odom' to 'map' is not recorded at their time"):
-        seen(tmp_path, [*late, *ego(frame="odom")])
+        trace_of(tmp_path, [*late, *ego(frame="odom")])
 
 
 @pytest.mark.parametrize("frame", ["world", "odom", "site"])
 def test_fixed_frame_of_another_name(tmp_path: Path, frame: str) -> None:
     """A log whose frames have all one root has it as its fixed frame."""
     base = [ros.transform(T0, frame, "base", 5.0, topic="/tf_static")]
-    trace = seen(
+    trace = trace_of(
         tmp_path,
         [*ego(frame=frame), *base, *[ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]],
     )
@@ -127,18 +125,18 @@ def test_fixed_frame_of_another_name(tmp_path: Path, frame: str) -> None:
 def test_no_stamps(tmp_path: Path) -> None:
     """Stamps that stand still, or that are there only in part: the container's times count, for all messages."""
     for keep in (0, 7):
-        messages = [*ego(), *others()]
+        messages = [*ego(), *road_users()]
         for i, message in enumerate(messages):
             if i >= keep:
                 message[3]["header"]["stamp"] = {}
-        trace = seen(tmp_path, messages)
+        trace = trace_of(tmp_path, messages)
         assert states(trace, "ego")[1]["t_ns"] == 100_050_000_000
         assert "log times of the container" in quality(trace)["log_time_used"]["message"]
 
 
 def test_simulated_time_begins_at_zero(tmp_path: Path) -> None:
     messages = [ros.odometry(i * 0.05, i * 0.5, 0.0, 0.0, 10.0, log_s=1.7e9 + i) for i in range(N)]
-    trace = seen(tmp_path, messages)
+    trace = trace_of(tmp_path, messages)
     assert [row["t_ns"] for row in states(trace)][:2] == [0, 50_000_000]
     assert log(trace)["utc_start_ns"] == 1_700_000_000 * 10**9
 
@@ -146,9 +144,9 @@ def test_simulated_time_begins_at_zero(tmp_path: Path) -> None:
 def test_two_clocks(tmp_path: Path) -> None:
     """Objects by the simulation's clock, the ego by the wall's: only the container has one for both."""
     objects = [
-        (topic, name, t_s, {**content, "header": ros.header(t_s - 90.0)}) for topic, name, t_s, content in others()
+        (topic, name, t_s, {**content, "header": ros.header(t_s - 90.0)}) for topic, name, t_s, content in road_users()
     ]
-    trace = seen(tmp_path, [*ego(), *objects])
+    trace = trace_of(tmp_path, [*ego(), *objects])
     assert states(trace, "9")[0]["t_ns"] == 100_000_000_000
     assert "do not overlap: they come from two clocks" in quality(trace)["log_time_used"]["message"]
 
@@ -174,7 +172,7 @@ def bag(folder: Path, names: list[str], storage: str = "mcap") -> Path:
 
 
 def parts(tmp_path: Path, n: int = 3) -> tuple[Path, list[ros.Message]]:
-    messages = sorted([*chain(), *ego(), *others()], key=lambda message: message[2])
+    messages = sorted([*chain(), *ego(), *road_users()], key=lambda message: message[2])
     folder = tmp_path / "drive"
     folder.mkdir()
     step = -(-len(messages) // n)
@@ -192,7 +190,7 @@ def test_bag_in_parts(tmp_path: Path) -> None:
     assert expand_traces([str(folder)]) == expand_traces([str(tmp_path)]) == [folder]
     trace = read(folder)
     assert trace.drive_id.startswith("drive-")
-    assert rows(trace) == rows(seen(tmp_path, messages))
+    assert rows(trace) == rows(trace_of(tmp_path, messages))
     before = trace.drive_id
     shutil.copy(folder / "drive_0.mcap", folder / "drive_2.mcap")
     assert read(folder).drive_id != before
@@ -209,7 +207,7 @@ def test_types_are_numbered_anew_in_each_part(tmp_path: Path) -> None:
             assert summary is not None
             first.add(summary.schemas[1].name)
     assert len(first) == 2
-    assert rows(read(folder)) == rows(seen(tmp_path, messages))
+    assert rows(read(folder)) == rows(trace_of(tmp_path, messages))
 
 
 def test_what_a_bag_holds(tmp_path: Path) -> None:
@@ -243,7 +241,7 @@ def test_bags_that_cannot_be_read(tmp_path: Path) -> None:
         read(folder)
 
 
-def written(folder: Path, mode: rosbag2.CompressionMode) -> Path:
+def compressed_bag(folder: Path, mode: rosbag2.CompressionMode) -> Path:
     """Return the folder of a compressed bag with one odometry message."""
     store, odometry = get_typestore(Stores.ROS2_HUMBLE), "nav_msgs/msg/Odometry"
     writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
@@ -254,7 +252,7 @@ def written(folder: Path, mode: rosbag2.CompressionMode) -> Path:
 
 
 def test_a_bag_of_compressed_files_is_read_when_they_are_unpacked(tmp_path: Path) -> None:
-    folder = written(tmp_path / "my bag", rosbag2.CompressionMode.FILE)
+    folder = compressed_bag(tmp_path / "my bag", rosbag2.CompressionMode.FILE)
     (packed,) = folder.glob("*.zstd")
     with pytest.raises(TraceError, match="a bag whose files are compressed: unpack them in its folder with ") as error:
         read(folder)
@@ -266,7 +264,7 @@ def test_a_bag_of_compressed_files_is_read_when_they_are_unpacked(tmp_path: Path
 
 @pytest.mark.ci
 def test_a_bag_of_compressed_messages_and_a_bag_of_ros_1_name_the_command_that_converts_them(tmp_path: Path) -> None:
-    folder = written(tmp_path / "bag", rosbag2.CompressionMode.MESSAGE)
+    folder = compressed_bag(tmp_path / "bag", rosbag2.CompressionMode.MESSAGE)
     old = tmp_path / "old.bag"
     with rosbag1.Writer(old) as writer:
         writer.add_connection("/odometry", "nav_msgs/msg/Odometry", typestore=get_typestore(Stores.ROS1_NOETIC))
@@ -286,8 +284,8 @@ def test_the_description_of_a_bag_is_not_a_log(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_byte_orders(tmp_path: Path, order: str) -> None:
-    messages = [*ego(), *others(), *chain()]
-    assert rows(read(ros.write(tmp_path / "x.mcap", messages, order=order))) == rows(seen(tmp_path, messages))
+    messages = [*ego(), *road_users(), *chain()]
+    assert rows(read(ros.write(tmp_path / "x.mcap", messages, order=order))) == rows(trace_of(tmp_path, messages))
 
 
 @settings(max_examples=15, deadline=None)
@@ -296,12 +294,12 @@ def test_order_of_messages_and_objects_changes_nothing(
     tmp_path_factory: pytest.TempPathFactory, random: object
 ) -> None:
     folder = tmp_path_factory.mktemp("order")
-    messages = [*ego(), *others(), *chain()]
-    expected = rows(seen(folder, messages))
+    messages = [*ego(), *road_users(), *chain()]
+    expected = rows(trace_of(folder, messages))
     for message in messages:
         random.shuffle(message[3].get("objects", []))  # type: ignore[attr-defined]
     random.shuffle(messages)  # type: ignore[attr-defined]
-    assert rows(seen(folder, messages)) == expected
+    assert rows(trace_of(folder, messages)) == expected
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:
@@ -310,14 +308,14 @@ def test_nothing_to_read(tmp_path: Path) -> None:
         "drivelint docs mapping shows how messages of other types become a table"
     )
     with pytest.raises(TraceError, match=said):
-        seen(tmp_path, chain())
+        trace_of(tmp_path, chain())
     folder = tmp_path / "bag"
     folder.mkdir()
     ros.write(folder / "drive.mcap", chain())
     with pytest.raises(TraceError, match=said):
         read(bag(folder, ["drive.mcap"]))
     with pytest.raises(TraceError, match="no road users and no odometry"):
-        seen(tmp_path, [ros.things(T0)])
+        trace_of(tmp_path, [ros.things(T0)])
 
 
 def test_definition_in_idl(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from tests.formats.logs import quality, read
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import ego, others
+from tests.formats.ros2.ros_drive import ego, road_users
 from tests.formats.sqlite_bag import sqlite_log
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def parts(folder: Path, suffix: str, gap_s: float = 0.0) -> list[Path]:
     """Write a recording of two seconds in two files; `gap_s`: the time between them."""
-    messages = sorted([*ego(), *others()], key=lambda message: message[2])
+    messages = sorted([*ego(), *road_users()], key=lambda message: message[2])
     half = len(messages) // 2
     later = [(topic, name, t_s + gap_s, content) for topic, name, t_s, content in messages[half:]]
     write = ros.write if suffix == ".mcap" else sqlite_log.write

@@ -20,34 +20,36 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-ONE = "00010203-0405-0607-0809-0a0b0c0d0e01"
-TWO = "00010203-0405-0607-0809-0a0b0c0d0e02"
+CAR_1 = "00010203-0405-0607-0809-0a0b0c0d0e01"
+CAR_2 = "00010203-0405-0607-0809-0a0b0c0d0e02"
 TRACKING = "/perception/object_recognition/tracking/objects"
 BOX = {"type": 0, "dimensions": ros.xyz(4.5, 1.8, 1.5)}
 
 
-def seen(folder: Path, messages: list[ros.Message], types: dict[str, str] = autoware.TYPES, **options: Any) -> Trace:
+def trace_of(
+    folder: Path, messages: list[ros.Message], types: dict[str, str] = autoware.TYPES, **options: Any
+) -> Trace:
     return read(autoware.write(folder / "log.mcap", messages, types), **options)
 
 
-def predictions(speed: float = 10.0, **other: Any) -> list[ros.Message]:
+def predictions(speed: float = 10.0, **options: Any) -> list[ros.Message]:
     """Return a car that stands and one that drives on from 20, 20 with the heading `TURN`."""
     return [
         autoware.predictions(
             t_s,
             autoware.prediction(1, 60.0, 0.0),
-            autoware.prediction(2, 20.0 + along(t_s)[0], 20.0 + along(t_s)[1], TURN, speed, **other),
+            autoware.prediction(2, 20.0 + along(t_s)[0], 20.0 + along(t_s)[1], TURN, speed, **options),
         )
         for t_s in ticks()
     ]
 
 
-def tracks(topic: str = TRACKING, name: int = 2, **other: Any) -> list[ros.Message]:
+def tracks(topic: str = TRACKING, name: int = 2, **options: Any) -> list[ros.Message]:
     """Return the car that drives as a track."""
     found = []
     for t_s in ticks():
         _, kind, _, content = ros.tracks(
-            t_s, ros.track(name, 20.0 + along(t_s)[0], 20.0 + along(t_s)[1], TURN, 10.0, **other)
+            t_s, ros.track(name, 20.0 + along(t_s)[0], 20.0 + along(t_s)[1], TURN, 10.0, **options)
         )
         found.append((topic, kind, t_s, content))
     return found
@@ -59,11 +61,11 @@ def detections() -> list[ros.Message]:
 
 def test_predictions(tmp_path: Path) -> None:
     """Twist is along the body's own axes; the ways it may go are no states."""
-    trace = seen(tmp_path, [*ego(), *predictions()])
-    assert set(actors(trace)) == {ONE, TWO, "ego"}
-    assert (classes(trace)[TWO], size(trace, TWO)) == ("car", (4.5, 1.8, 1.5))
-    assert [row["x_m"] for row in states(trace, ONE)] == [60.0] * N
-    state = at(trace, TWO, T0 + 1.0)
+    trace = trace_of(tmp_path, [*ego(), *predictions()])
+    assert set(actors(trace)) == {CAR_1, CAR_2, "ego"}
+    assert (classes(trace)[CAR_2], size(trace, CAR_2)) == ("car", (4.5, 1.8, 1.5))
+    assert [row["x_m"] for row in states(trace, CAR_1)] == [60.0] * N
+    state = at(trace, CAR_2, T0 + 1.0)
     assert (state["x_m"], state["y_m"]) == pytest.approx((25.0, 20.0 + 10.0 * math.sin(TURN)))
     assert (state["vx_mps"], state["vy_mps"]) == pytest.approx((5.0, 10.0 * math.sin(TURN)))
     assert state["yaw_rad"] == pytest.approx(TURN)
@@ -72,14 +74,14 @@ def test_predictions(tmp_path: Path) -> None:
 
 def test_messages_of_different_layouts(tmp_path: Path) -> None:
     """How many paths, classes and corners an object has moves everything behind it."""
-    plain = seen(tmp_path, [*ego(), *predictions()])
+    plain = trace_of(tmp_path, [*ego(), *predictions()])
     varied = []
     for k, (topic, kind, t_s, content) in enumerate(predictions()):
         for i, item in enumerate(content["objects"]):
             item["kinematics"]["predicted_paths"] = item["kinematics"]["predicted_paths"][:1] * ((k + i) % 4)
             item["classification"] = item["classification"] * (1 + (k * i) % 3)
         varied.append((topic, kind, t_s, {**content, "objects": content["objects"][:: 1 - 2 * (k % 2)]}))
-    other = seen(tmp_path, [*ego(), *varied])
+    other = trace_of(tmp_path, [*ego(), *varied])
     for name in ("actor", "actor_state"):
         assert plain.tables[name].drop("drive_id") == other.tables[name].drop("drive_id")
 
@@ -89,13 +91,13 @@ def test_messages_of_different_layouts(tmp_path: Path) -> None:
 )
 def test_the_likeliest_class(tmp_path: Path, label: int, word: str | None) -> None:
     likely = [{"label": 2, "probability": 0.3}, {"label": label, "probability": 0.6}, {"label": 3, "probability": 0.1}]
-    assert classes(seen(tmp_path, [*ego(), *predictions(classes=likely)]))[TWO] == word
+    assert classes(trace_of(tmp_path, [*ego(), *predictions(classes=likely)]))[CAR_2] == word
 
 
 def test_a_cylinder_is_as_long_as_wide(tmp_path: Path) -> None:
     """Its dimensions are diameter and height; some writers leave the second one out."""
     shape = {"type": 1, "dimensions": ros.xyz(0.6, 0.0, 1.7)}
-    assert size(seen(tmp_path, [*ego(), *predictions(shape=shape)]), TWO) == (0.6, 0.6, 1.7)
+    assert size(trace_of(tmp_path, [*ego(), *predictions(shape=shape)]), CAR_2) == (0.6, 0.6, 1.7)
 
 
 def corners(*points: tuple[float, float], height: float = 2.0) -> dict[str, Any]:
@@ -105,21 +107,21 @@ def corners(*points: tuple[float, float], height: float = 2.0) -> dict[str, Any]
 
 def test_a_polygon_has_the_box_around_its_footprint(tmp_path: Path) -> None:
     """The footprint is given along the body's axes, from its pose; the box is around the footprint, not around the pose."""
-    trace = seen(tmp_path, [*ego(), *predictions(shape=corners((-1.0, -0.5), (3.0, -0.5), (2.0, 1.5)))])
-    state, (x, y) = at(trace, TWO, T0 + 1.0), along(T0 + 1.0)
-    assert size(trace, TWO) == pytest.approx((4.0, 2.0, 2.0))
+    trace = trace_of(tmp_path, [*ego(), *predictions(shape=corners((-1.0, -0.5), (3.0, -0.5), (2.0, 1.5)))])
+    state, (x, y) = at(trace, CAR_2, T0 + 1.0), along(T0 + 1.0)
+    assert size(trace, CAR_2) == pytest.approx((4.0, 2.0, 2.0))
     ahead, left = 1.0, 0.5
     off = ahead * math.cos(TURN) - left * math.sin(TURN), ahead * math.sin(TURN) + left * math.cos(TURN)
     assert (state["x_m"], state["y_m"]) == pytest.approx((20.0 + x + off[0], 20.0 + y + off[1]))
     found = quality(trace)["polygon_box"]
     assert (found["severity"], found["n"]) == ("info", N)
-    assert (actors(trace)[ONE]["length_m"], at(trace, ONE, T0)["x_m"]) == (4.5, 60.0)
+    assert (actors(trace)[CAR_1]["length_m"], at(trace, CAR_1, T0)["x_m"]) == (4.5, 60.0)
 
 
 @pytest.mark.parametrize("points", [(), ((1.0, 1.0),)])
 def test_a_polygon_without_an_area_has_no_size(tmp_path: Path, points: tuple[tuple[float, float], ...]) -> None:
     shape = {**corners(*points), "dimensions": ros.xyz(9.0, 9.0, 2.0)}
-    assert size(seen(tmp_path, [*ego(), *predictions(shape=shape)]), TWO) == (None, None, 2.0)
+    assert size(trace_of(tmp_path, [*ego(), *predictions(shape=shape)]), CAR_2) == (None, None, 2.0)
 
 
 def test_a_polygon_of_no_orientation_stays_in_place(tmp_path: Path) -> None:
@@ -129,69 +131,69 @@ def test_a_polygon_of_no_orientation_stays_in_place(tmp_path: Path) -> None:
         content["objects"][0]["shape"] = shape
         content["objects"][0]["kinematics"]["pose_with_covariance"]["pose"]["orientation"] = {}
         content["objects"][0]["kinematics"]["orientation_availability"] = 0
-    state = at(seen(tmp_path, [*ego(), *messages]), TWO, T0)
+    state = at(trace_of(tmp_path, [*ego(), *messages]), CAR_2, T0)
     assert (state["x_m"], state["y_m"], state["yaw_rad"]) == (20.0, 20.0, None)
 
 
 def test_one_body_on_several_topics_is_one_track(tmp_path: Path) -> None:
     """The prediction counts before the tracks it was made of, whose headings may be turned round; detections are nobody's."""
     messages = [*ego(), *predictions(), *tracks(facing=1), *detections()]
-    trace = seen(tmp_path, messages)
-    assert set(actors(trace)) == {ONE, TWO, "ego"}
-    assert at(trace, TWO, T0 + 1.0)["yaw_rad"] == pytest.approx(TURN)
-    assert len(states(trace, TWO)) == N
+    trace = trace_of(tmp_path, messages)
+    assert set(actors(trace)) == {CAR_1, CAR_2, "ego"}
+    assert at(trace, CAR_2, T0 + 1.0)["yaw_rad"] == pytest.approx(TURN)
+    assert len(states(trace, CAR_2)) == N
     (note,) = [note for note in trace.notes if "road users" in note]
     assert note == (
         f"road users: topic /perception/object_recognition/objects is read, {TRACKING} is not read: --topic chooses another topic"
     )
-    chosen = seen(tmp_path, messages, topic=TRACKING)
-    assert set(actors(chosen)) == {TWO, "ego"}
-    assert at(chosen, TWO, T0 + 1.0)["yaw_rad"] is None
+    chosen = trace_of(tmp_path, messages, topic=TRACKING)
+    assert set(actors(chosen)) == {CAR_2, "ego"}
+    assert at(chosen, CAR_2, T0 + 1.0)["yaw_rad"] is None
     assert "no_road_users" not in quality(chosen)
 
 
 def test_the_usual_topic_counts_among_several(tmp_path: Path) -> None:
     near = "/perception/object_recognition/tracking/near_objects"
     both = [*ego(), *tracks(), *tracks(near, name=7)]
-    assert set(actors(seen(tmp_path, both))) == {TWO, "ego"}
+    assert set(actors(trace_of(tmp_path, both))) == {CAR_2, "ego"}
     two = [*ego(), *tracks("/far"), *tracks(near, name=7)]
     said = r"road users on 2 topics \(/far, /perception.*near_objects\): choose with --topic"
     with pytest.raises(TraceError, match=said):
-        seen(tmp_path, two)
+        trace_of(tmp_path, two)
     # a prediction is of all of them
-    assert set(actors(seen(tmp_path, [*two, *predictions()]))) == {ONE, TWO, "ego"}
+    assert set(actors(trace_of(tmp_path, [*two, *predictions()]))) == {CAR_1, CAR_2, "ego"}
 
 
 def test_two_kinds_of_perception_are_not_told_apart(tmp_path: Path) -> None:
     simulated = [ros.things(t_s, ros.thing(5, 9.0, 9.0)) for t_s in ticks()]
     with pytest.raises(TraceError, match="road users on 2 topics"):
-        seen(tmp_path, [*ego(), *predictions(), *simulated])
+        trace_of(tmp_path, [*ego(), *predictions(), *simulated])
 
 
 def test_detections_alone_are_nobody(tmp_path: Path) -> None:
     """They have no ids: that somebody was there is known, not who, so rules about others are unknown."""
-    trace = seen(tmp_path, [*ego(), *detections()])
+    trace = trace_of(tmp_path, [*ego(), *detections()])
     assert set(actors(trace)) == {"ego"}
     found = quality(trace)["no_road_users"]
     assert (found["severity"], found["n"]) == ("warning", N)
     assert "/perception/object_recognition/detection/objects, are detections without ids" in found["message"]
     topic = "/perception/object_recognition/detection/objects"
     with pytest.raises(TraceError, match=f"the detections on topic '{topic}' have no ids"):
-        seen(tmp_path, [*ego(), *detections()], topic=topic)
+        trace_of(tmp_path, [*ego(), *detections()], topic=topic)
     with pytest.raises(TraceError, match="no road users and no odometry in this ROS log"):
-        seen(tmp_path, detections())
+        trace_of(tmp_path, detections())
 
 
 def test_older_names(tmp_path: Path) -> None:
     """Bags of autoware_auto_perception_msgs, where the definitions are recorded as text."""
-    new = seen(tmp_path, [*ego(), *predictions()])
+    new = trace_of(tmp_path, [*ego(), *predictions()])
     old_name = "autoware_auto_perception_msgs"
     types = {key.replace("autoware_perception_msgs", old_name): text for key, text in autoware.TYPES.items()}
     types = {key: text.replace("autoware_perception_msgs", old_name) for key, text in types.items()}
     messages = [
         (topic, kind.replace("autoware_perception_msgs", old_name), *rest) for topic, kind, *rest in predictions()
     ]
-    old = seen(tmp_path, [*ego(), *messages], types)  # type: ignore[list-item]
+    old = trace_of(tmp_path, [*ego(), *messages], types)  # type: ignore[list-item]
     assert old.tables["actor_state"].drop("drive_id") == new.tables["actor_state"].drop("drive_id")
 
 
@@ -220,7 +222,7 @@ def test_values_are_those_that_rosbags_reads(tmp_path: Path) -> None:
     store = typesys.get_typestore(typesys.Stores.EMPTY)
     for name, text in autoware.TYPES.items():
         store.register(typesys.get_types_from_msg(text.strip(), name.replace("/", "/msg/")))
-    trace = seen(tmp_path, round_drive())
+    trace = trace_of(tmp_path, round_drive())
     ours = {(row["actor_id"], row["t_ns"]): row for row in states(trace)}
     sizes = {name: size(trace, name) for name in actors(trace)}
     compared = 0

@@ -35,11 +35,13 @@ if TYPE_CHECKING:
 OTHER_TOPIC = "/perception/traffic_light_recognition/internal/traffic_signals"
 
 
-def seen(folder: Path, messages: list[ros.Message], types: dict[str, str] = autoware.TYPES, **options: Any) -> Trace:
+def trace_of(
+    folder: Path, messages: list[ros.Message], types: dict[str, str] = autoware.TYPES, **options: Any
+) -> Trace:
     return read(autoware.write(folder / "log.mcap", messages, types), **options)
 
 
-def shown(trace: Trace) -> list[tuple[str, float, str | None]]:
+def light_states(trace: Trace) -> list[tuple[str, float, str | None]]:
     """Return what is known of the lights: id, seconds since the drive began, state."""
     rows = trace.tables["signal_state"].to_pylist()
     return [(row["signal_id"], round(row["t_ns"] / 1e9 - T0, 6), row["state"]) for row in rows]
@@ -47,8 +49,8 @@ def shown(trace: Trace) -> list[tuple[str, float, str | None]]:
 
 def state_of(folder: Path, elements: Sequence[dict[str, Any]], types: dict[str, str] = autoware.TYPES) -> str | None:
     """Return the state of a group that has these elements all the time."""
-    trace = seen(folder, [*ego(), *(autoware.lights(t_s, {7: elements}) for t_s in ticks())], types)
-    (state,) = {state for _, _, state in shown(trace)}
+    trace = trace_of(folder, [*ego(), *(autoware.lights(t_s, {7: elements}) for t_s in ticks())], types)
+    (state,) = {state for _, _, state in light_states(trace)}
     return state
 
 
@@ -121,7 +123,7 @@ def test_a_group_that_is_no_longer_listed_is_unknown(tmp_path: Path) -> None:
     red, green = [element(RED)], [element(GREEN)]
     groups: list[dict[int, Any]] = [{7: red, 8: green}, {7: red}, {7: green, 9: red}, {}, {7: green}]
     messages = [autoware.lights(T0 + 0.1 * k, of) for k, of in enumerate(groups)]
-    assert shown(seen(tmp_path, [*ego(), *messages])) == [
+    assert light_states(trace_of(tmp_path, [*ego(), *messages])) == [
         ("7", 0.0, "red"), ("7", 0.1, "red"), ("7", 0.2, "green"), ("7", 0.3, None), ("7", 0.4, "green"),
         ("8", 0.0, "green"), ("8", 0.1, None),
         ("9", 0.2, "red"), ("9", 0.3, None),
@@ -130,7 +132,7 @@ def test_a_group_that_is_no_longer_listed_is_unknown(tmp_path: Path) -> None:
 
 def test_a_state_holds_no_longer_than_five_seconds_without_a_message(tmp_path: Path) -> None:
     messages = [autoware.lights(T0 + t_s, {7: [element(RED)]}) for t_s in (0.0, 4.0, 10.0)]
-    assert shown(seen(tmp_path, [*ego(n=401), *messages])) == [
+    assert light_states(trace_of(tmp_path, [*ego(n=401), *messages])) == [
         ("7", 0.0, "red"), ("7", 4.0, "red"), ("7", 9.0, None), ("7", 10.0, "red"), ("7", 15.0, None),
     ]  # fmt: skip
 
@@ -139,12 +141,12 @@ def test_order_of_messages_and_groups_changes_nothing(tmp_path: Path) -> None:
     messages = [
         autoware.lights(t_s, {k: [element(RED if t_s < T0 + k / 10 else GREEN)] for k in (5, 3, 11)}) for t_s in ticks()
     ]
-    expected = shown(seen(tmp_path, [*ego(), *messages]))
+    expected = light_states(trace_of(tmp_path, [*ego(), *messages]))
     turned = [
         (topic, kind, t_s, {**of, "traffic_light_groups": of["traffic_light_groups"][::-1]})
         for topic, kind, t_s, of in messages
     ]
-    assert shown(seen(tmp_path, [*turned[::-1], *ego()])) == expected
+    assert light_states(trace_of(tmp_path, [*turned[::-1], *ego()])) == expected
     assert len(expected) == 3 * len(messages)
 
 
@@ -152,7 +154,7 @@ def test_a_group_that_shows_two_things_at_once(tmp_path: Path) -> None:
     """Both rows stand: where they are read, two states at one time are none."""
     topic, kind, t_s, of = autoware.lights(T0, {7: [element(RED)]})
     twice = of["traffic_light_groups"] + autoware.lights(T0, {7: [element(GREEN)]})[3]["traffic_light_groups"]
-    rows = shown(seen(tmp_path, [*ego(), (topic, kind, t_s, {**of, "traffic_light_groups": twice})]))
+    rows = light_states(trace_of(tmp_path, [*ego(), (topic, kind, t_s, {**of, "traffic_light_groups": twice})]))
     assert rows == [("7", 0.0, "green"), ("7", 0.0, "red")]
 
 
@@ -163,7 +165,7 @@ def test_older_names_of_message_and_fields(tmp_path: Path) -> None:
         found.append(
             ("/signals", "autoware_perception_msgs/TrafficSignalArray", t_s, {"stamp": ros.stamp(t_s), "signals": rows})
         )
-    assert {(name, state) for name, _, state in shown(seen(tmp_path, [*ego(), *found]))} == {("7", "amber")}
+    assert {(name, state) for name, _, state in light_states(trace_of(tmp_path, [*ego(), *found]))} == {("7", "amber")}
 
 
 def test_lights_by_their_lines_are_not_read(tmp_path: Path) -> None:
@@ -179,18 +181,20 @@ def test_lights_by_their_lines_are_not_read(tmp_path: Path) -> None:
     messages = [
         ("/signals", f"{name}/TrafficSignalArray", t_s, {"header": ros.header(t_s), "signals": rows}) for t_s in ticks()
     ]
-    assert shown(seen(tmp_path, [*ego(), *messages], types)) == []
+    assert light_states(trace_of(tmp_path, [*ego(), *messages], types)) == []
 
 
 def test_the_usual_topic_counts(tmp_path: Path) -> None:
     final = [autoware.lights(t_s, {7: [element(GREEN)]}) for t_s in ticks()]
     raw = [autoware.lights(t_s, {7: [element(RED)]}, OTHER_TOPIC) for t_s in ticks()]
-    trace = seen(tmp_path, [*ego(), *raw, *final])
-    assert {state for *_, state in shown(trace)} == {"green"}
+    trace = trace_of(tmp_path, [*ego(), *raw, *final])
+    assert {state for *_, state in light_states(trace)} == {"green"}
     assert f"{OTHER_TOPIC} is not read" in trace.notes[0]
-    assert {state for *_, state in shown(seen(tmp_path, [*ego(), *raw, *final], topic=OTHER_TOPIC))} == {"red"}
+    assert {state for *_, state in light_states(trace_of(tmp_path, [*ego(), *raw, *final], topic=OTHER_TOPIC))} == {
+        "red"
+    }
     with pytest.raises(TraceError, match="traffic lights on 2 topics"):
-        seen(tmp_path, [*ego(), *raw, *(("/x", *rest) for _, *rest in final)])  # type: ignore[list-item]
+        trace_of(tmp_path, [*ego(), *raw, *(("/x", *rest) for _, *rest in final)])  # type: ignore[list-item]
 
 
 def utc(messages: list[ros.Message]) -> list[ros.Message]:
@@ -206,19 +210,19 @@ def test_messages_without_a_time_are_left_out(tmp_path: Path) -> None:
     lights = [autoware.lights(t_s + 1.7e9, {7: [element(RED)]}) for t_s in ticks()]
     for message in lights[10:20]:
         message[3]["stamp"] = {}
-    trace = seen(tmp_path, [*utc(ego()), *lights])
+    trace = trace_of(tmp_path, [*utc(ego()), *lights])
     assert len(trace.tables["signal_state"]) == 30
     assert quality(trace)["signal_clock"]["n"] == 10
     for message in lights:
         message[3]["stamp"] = {}
-    trace = seen(tmp_path, [*utc(ego()), *lights])
+    trace = trace_of(tmp_path, [*utc(ego()), *lights])
     assert len(trace.tables["signal_state"]) == 0
     assert "have other times" in quality(trace)["signal_clock"]["message"]
 
 
 def test_another_clock(tmp_path: Path) -> None:
     lights = [autoware.lights(t_s + 1.7e9, {7: [element(RED)]}) for t_s in ticks()]
-    trace = seen(tmp_path, [*ego(), *lights])
+    trace = trace_of(tmp_path, [*ego(), *lights])
     assert len(trace.tables["signal_state"]) == 0
     assert quality(trace)["signal_clock"]["severity"] == "warning"
 
@@ -231,5 +235,5 @@ def test_times_of_the_container(tmp_path: Path) -> None:
     lights = [autoware.lights(t_s, {7: [element(RED)]}) for t_s in ticks()]
     for message in lights:
         message[3]["stamp"] = {}
-    rows = shown(seen(tmp_path, [*poses, *lights]))
+    rows = light_states(trace_of(tmp_path, [*poses, *lights]))
     assert [t_s for _, t_s, _ in rows] == pytest.approx([t_s - T0 for t_s in ticks()])

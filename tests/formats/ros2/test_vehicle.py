@@ -25,22 +25,22 @@ SIZE = pytest.approx((4.89, 1.896, 2.5))
 AHEAD = 1.345
 
 
-def seen(folder: Path, messages: list[ros.Message], **options: Any) -> Trace:
+def trace_of(folder: Path, messages: list[ros.Message], **options: Any) -> Trace:
     return read(autoware.write(folder / "log.mcap", messages), **options)
 
 
-def axle(**other: Any) -> list[ros.Message]:
+def axle(**options: Any) -> list[ros.Message]:
     """Return the odometry of the rear axle."""
-    return ego(child="base_link", **other)
+    return ego(child="base_link", **options)
 
 
-def parameters(node: str = "/a", t_s: float = T0, /, **other: float) -> list[ros.Message]:
-    return autoware.parameters(t_s, node, **{**autoware.PARAMETERS, **other})
+def parameters(node: str = "/a", t_s: float = T0, /, **values: float) -> list[ros.Message]:
+    return autoware.parameters(t_s, node, **{**autoware.PARAMETERS, **values})
 
 
 def test_size_and_centre(tmp_path: Path) -> None:
     """Odometry is the rear axle's, on the ground; a state is the centre of the box."""
-    trace = seen(tmp_path, [*axle(), *parameters()])
+    trace = trace_of(tmp_path, [*axle(), *parameters()])
     assert size(trace) == SIZE
     state = at(trace, "ego", T0)
     place = AHEAD * math.cos(TURN), AHEAD * math.sin(TURN), 1.25
@@ -50,13 +50,13 @@ def test_size_and_centre(tmp_path: Path) -> None:
 
 
 def test_without_parameters_nothing_is_made_up(tmp_path: Path) -> None:
-    trace = seen(tmp_path, axle())
+    trace = trace_of(tmp_path, axle())
     assert size(trace) == (None, None, None)
     assert (at(trace, "ego", T0)["x_m"], quality(trace)["reference_point"]["severity"]) == (0.0, "warning")
 
 
 def test_a_vehicle_with_a_side_that_sticks_out(tmp_path: Path) -> None:
-    trace = seen(tmp_path, [*axle(), *parameters(left_overhang=0.528)])
+    trace = trace_of(tmp_path, [*axle(), *parameters(left_overhang=0.528)])
     assert size(trace) == pytest.approx((4.89, 2.296, 2.5))
     assert trace.notes[0].endswith("ahead of base_link and 0.20 m to the left")
     state = at(trace, "ego", T0)
@@ -72,7 +72,7 @@ def test_the_centre_swings_when_the_vehicle_turns(tmp_path: Path, child: str) ->
         ros.odometry(t_s, 25.0 * math.sin(turn), -25.0 * math.cos(turn), turn, 10.0, **other)
         for t_s, turn in ((t_s, 0.4 * (t_s - T0)) for t_s in ticks(81))
     ]
-    trace = seen(tmp_path, [*messages, *parameters(left_overhang=0.528)])
+    trace = trace_of(tmp_path, [*messages, *parameters(left_overhang=0.528)])
     rows = states(trace, "ego")
     before, here, after = rows[39:42]
     for place, velocity in (("x_m", "vx_mps"), ("y_m", "vy_mps")):
@@ -84,10 +84,10 @@ def test_nodes_that_agree(tmp_path: Path) -> None:
     """The parameters may come late; one that is set again counts as it is then."""
     late = parameters("/b", T0 + 1.0)
     changed = autoware.parameters(T0 + 0.5, "/b", wheel_base=9.0)
-    assert size(seen(tmp_path, [*axle(), *parameters(), *changed, *late])) == SIZE
+    assert size(trace_of(tmp_path, [*axle(), *parameters(), *changed, *late])) == SIZE
     of_event = changed[0][3]
     of_event["changed_parameters"] = of_event.pop("new_parameters")
-    trace = seen(tmp_path, [*axle(), *parameters("/a", T0 - 1.0), *parameters("/b", T0 - 1.0), *changed])
+    trace = trace_of(tmp_path, [*axle(), *parameters("/a", T0 - 1.0), *parameters("/b", T0 - 1.0), *changed])
     assert size(trace) == (None, None, None)
     found = quality(trace)["ego_size"]
     assert found["message"] == "/a, /b give the ego different sizes, and none is used: set it with --ego-size"
@@ -97,19 +97,19 @@ def test_nodes_that_say_only_a_part(tmp_path: Path) -> None:
     """The lengths of two nodes may be those of two vehicles."""
     front = autoware.parameters(T0, "/a", wheel_base=2.79, front_overhang=1.0, rear_overhang=1.1)
     side = autoware.parameters(T0, "/b", wheel_tread=1.64, left_overhang=0.128, right_overhang=0.128)
-    assert size(seen(tmp_path, [*axle(), *front, *side])) == (None, None, None)
+    assert size(trace_of(tmp_path, [*axle(), *front, *side])) == (None, None, None)
 
 
 @pytest.mark.parametrize(
     "wrong", [{"wheel_base": math.nan}, {"wheel_base": 0.0}, {"front_overhang": 2790.0}, {"wheel_tread": -1.0}]
 )
 def test_lengths_of_no_vehicle(tmp_path: Path, wrong: dict[str, float]) -> None:
-    trace = seen(tmp_path, [*axle(), *parameters(**wrong)])
+    trace = trace_of(tmp_path, [*axle(), *parameters(**wrong)])
     assert (size(trace), at(trace, "ego", T0)["x_m"]) == ((None, None, None), 0.0)
 
 
 def test_without_a_height_the_place_is_the_axles(tmp_path: Path) -> None:
-    trace = seen(tmp_path, [*axle(), *parameters(vehicle_height=math.nan)])
+    trace = trace_of(tmp_path, [*axle(), *parameters(vehicle_height=math.nan)])
     assert size(trace)[2] is None
     assert at(trace, "ego", T0)["z_m"] == 0.0
 
@@ -119,9 +119,9 @@ def test_whole_numbers(tmp_path: Path) -> None:
     said = (of["new_parameters"][0] for *_, of in messages)
     value = next(each["value"] for each in said if each["name"] == "wheel_base")
     value.update(type=2, integer_value=3, double_value=0.0)
-    assert size(seen(tmp_path, [*axle(), *messages]))[0] == pytest.approx(5.1)
+    assert size(trace_of(tmp_path, [*axle(), *messages]))[0] == pytest.approx(5.1)
     value.update(type=4, string_value="3")
-    assert size(seen(tmp_path, [*axle(), *messages])) == (None, None, None)
+    assert size(trace_of(tmp_path, [*axle(), *messages])) == (None, None, None)
 
 
 def dimensions() -> list[ros.Message]:
@@ -131,25 +131,25 @@ def dimensions() -> list[ros.Message]:
 
 
 def test_recorded_dimensions(tmp_path: Path) -> None:
-    assert size(seen(tmp_path, [*axle(), *dimensions()])) == pytest.approx((4.89, 1.896, 2.5), abs=1e-6)
-    both = seen(tmp_path, [*axle(), *dimensions(), *parameters()])
+    assert size(trace_of(tmp_path, [*axle(), *dimensions()])) == pytest.approx((4.89, 1.896, 2.5), abs=1e-6)
+    both = trace_of(tmp_path, [*axle(), *dimensions(), *parameters()])
     assert size(both) == SIZE
     assert "ego_size" not in quality(both)
 
 
 def test_another_frame_than_the_axles(tmp_path: Path) -> None:
     """The size is the vehicle's; where its centre lies from that frame nobody says, unless the user does."""
-    trace = seen(tmp_path, [*ego(child="imu"), *parameters()])
+    trace = trace_of(tmp_path, [*ego(child="imu"), *parameters()])
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == 0.0
     assert quality(trace)["reference_point"]["severity"] == "warning"
-    given = seen(tmp_path, [*ego(child="imu"), *parameters()], ego_size=EgoSize(4.89, 1.9, 2.0))
+    given = trace_of(tmp_path, [*ego(child="imu"), *parameters()], ego_size=EgoSize(4.89, 1.9, 2.0))
     assert at(given, "ego", T0)["x_m"] == pytest.approx(2.0 * math.cos(TURN))
     assert "reference_point" not in quality(given)
 
 
 def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
-    trace = seen(tmp_path, [*axle(), *parameters()], ego_size=EgoSize(3.0, 1.9, 0.7))
+    trace = trace_of(tmp_path, [*axle(), *parameters()], ego_size=EgoSize(3.0, 1.9, 0.7))
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
     assert told(trace, "ego_size") == [
@@ -159,7 +159,7 @@ def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
 
 
 def test_the_option_counts_where_the_log_says_nothing(tmp_path: Path) -> None:
-    trace = seen(tmp_path, axle(), ego_size=EgoSize(4.0, 1.7, 1.2))
+    trace = trace_of(tmp_path, axle(), ego_size=EgoSize(4.0, 1.7, 1.2))
     assert size(trace) == (4.0, 1.7, None)
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(1.2 * math.cos(TURN))
 

@@ -12,7 +12,7 @@ STEP_S = 0.1
 
 
 def track(
-    place: Any, heading: Any = 0.0, *, kind: str = "VEHICLE", own: str | None = None, **state: Any
+    place: Any, heading: Any = 0.0, *, kind: str = "VEHICLE", dataset_type: str | None = None, **state: Any
 ) -> dict[str, Any]:
     """Return a track at places (T, 2): it has velocities by central differences, sizes of a car, and is valid all the time."""
     place = np.asarray(place, np.float64)
@@ -27,7 +27,7 @@ def track(
         "height": np.full((n, 1), 1.5),
         **state,
     }
-    return {"type": kind, "state": values, "metadata": {"type": own or kind, "object_id": "?"}}
+    return {"type": kind, "state": values, "metadata": {"type": dataset_type or kind, "object_id": "?"}}
 
 
 def straight(n: int, speed: float, x: float = 0.0, y: float = 0.0) -> np.ndarray:

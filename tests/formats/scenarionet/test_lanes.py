@@ -32,8 +32,8 @@ def load(
     return load_map(MapSource("sd_made_1.pkl", pickle.dumps(content, 4)), **options)
 
 
-def columns(found: MapTables, name: str) -> dict[str, np.ndarray]:
-    mine = rows(found, "lane_point", lanelet_id=name)
+def columns(environment: MapTables, name: str) -> dict[str, np.ndarray]:
+    mine = rows(environment, "lane_point", lanelet_id=name)
     return {key: np.array([row[key] for row in mine], np.float64) for key in mine[0] if key != "lanelet_id"}
 
 

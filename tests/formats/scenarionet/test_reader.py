@@ -24,8 +24,8 @@ def column(trace: Trace, actor: str, name: str) -> np.ndarray:
     return np.array([row[name] for row in states(trace, actor)], np.float64)
 
 
-def ego_and(path: Path, others: dict[str, Any], **more: Any) -> Trace:
-    return read(put(path, scenario({"ego": track(straight(41, 10.0)), **others}, **more)))
+def ego_and(path: Path, tracks: dict[str, Any], **more: Any) -> Trace:
+    return read(put(path, scenario({"ego": track(straight(41, 10.0)), **tracks}, **more)))
 
 
 # ---- tracks
@@ -67,7 +67,7 @@ def test_sizes_in_any_shape(tmp_path: Path, length: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "own", "expected"),
+    ("kind", "dataset_type", "expected"),
     [
         ("VEHICLE", "VEHICLE", "vehicle"),
         ("VEHICLE", "vehicle.car", "car"),
@@ -85,8 +85,8 @@ def test_sizes_in_any_shape(tmp_path: Path, length: Any) -> None:
         ("UNSET", "UNSET", None),
     ],
 )
-def test_classes(tmp_path: Path, kind: str, own: str, expected: str | None) -> None:
-    trace = ego_and(tmp_path, {"a": track(straight(41, 0.0, y=9.0), kind=kind, own=own)})
+def test_classes(tmp_path: Path, kind: str, dataset_type: str, expected: str | None) -> None:
+    trace = ego_and(tmp_path, {"a": track(straight(41, 0.0, y=9.0), kind=kind, dataset_type=dataset_type)})
     assert classes(trace)["a"] == expected
 
 
@@ -141,7 +141,7 @@ def test_people_and_barriers_may_be_wider_than_long(tmp_path: Path) -> None:
 def test_the_standing_ego_of_nuscenes_has_the_size_that_is_always_exchanged(
     tmp_path: Path, width: float, expected: tuple[float | None, ...]
 ) -> None:
-    ego = track(straight(41, 0.0), own="vehicle.car", length=1.73, width=width, height=1.56)
+    ego = track(straight(41, 0.0), dataset_type="vehicle.car", length=1.73, width=width, height=1.56)
     trace = read(put(tmp_path, scenario({"ego": ego}, dataset="nuscenes", map="boston-seaport")))
     assert size(trace)[:2] == expected
 
@@ -261,7 +261,7 @@ def messages(t_s: np.ndarray) -> np.ndarray:
     return np.column_stack([8.0 * t_s + t_s**2, 0.02 * (8.0 * t_s + t_s**2)])
 
 
-LOST = (17, 18, 44, 90)
+LOST_STEPS = (17, 18, 44, 90)
 """Steps over a lost message of 0.02 s; the first two follow each other."""
 
 
@@ -271,7 +271,7 @@ def counted_ego(*, begins_s: float, tail: int) -> tuple[np.ndarray, np.ndarray]:
     The last `tail` steps are of the frames: so the converter fills up where messages run short.
     """
     steps = np.arange(121) * STEP_S
-    longer = np.isin(np.arange(120), LOST)
+    longer = np.isin(np.arange(120), LOST_STEPS)
     place = messages(begins_s + np.r_[0.0, np.cumsum(STEP_S + 0.02 * longer)])
     truth = messages(steps)
     if tail:

@@ -95,14 +95,17 @@ def test_the_ego_of_nuscenes_is_on_the_way_that_it_recorded(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "lost", "shift_s", "worst"), [(NUSCENES[1], 7, 0.058, (27.0, 4.7)), (NUSCENES[2], 9, 0.003, (26.3, 5.8))]
+    ("name", "lost_messages", "shift_s", "worst"),
+    [(NUSCENES[1], 7, 0.058, (27.0, 4.7)), (NUSCENES[2], 9, 0.003, (26.3, 5.8))],
 )
-def test_the_ego_of_nuscenes_leaps_no_more(name: str, lost: int, shift_s: float, worst: tuple[float, float]) -> None:
+def test_the_ego_of_nuscenes_leaps_no_more(
+    name: str, lost_messages: int, shift_s: float, worst: tuple[float, float]
+) -> None:
     """The greatest change of speed from step to step, as the scenario has it and with the time of lost messages."""
     told = second(name)
     state, ts = told["tracks"]["ego"]["state"], told["metadata"]["ts"]
     found = track_at_steps(state["position"][:, :2], state["heading"], ts, 0.02)
-    assert found.lost_messages == lost
+    assert found.lost_messages == lost_messages
     assert found.shift_s == pytest.approx(shift_s, abs=0.001)
 
     def greatest(place: np.ndarray) -> float:

@@ -47,19 +47,23 @@ VALUES: dict[str, Any] = {
 }
 
 
-def same(told: Any, read: Any) -> bool:
+def same(original: Any, copy: Any) -> bool:
     """Whether a value was read as what it is; a list of points may be an array, and a set is a list."""
-    if isinstance(told, np.ndarray):
-        return isinstance(read, np.ndarray) and told.dtype == read.dtype and np.array_equal(told, read)
-    if isinstance(told, dict):
-        return type(read) is dict and told.keys() == read.keys() and all(same(told[key], read[key]) for key in told)
-    if isinstance(told, (set, frozenset)):
-        return type(read) is list and set(read) == told
-    if isinstance(told, list) and isinstance(read, Points):
-        return told == read.as_list() and np.array_equal(np.array(told), read.array)
-    if isinstance(told, (list, tuple)):
-        return type(told) is type(read) and len(told) == len(read) and all(map(same, told, read))
-    return bool(told == read) and (isinstance(told, np.generic) or type(told) is type(read))
+    if isinstance(original, np.ndarray):
+        return isinstance(copy, np.ndarray) and original.dtype == copy.dtype and np.array_equal(original, copy)
+    if isinstance(original, dict):
+        return (
+            type(copy) is dict
+            and original.keys() == copy.keys()
+            and all(same(original[key], copy[key]) for key in original)
+        )
+    if isinstance(original, (set, frozenset)):
+        return type(copy) is list and set(copy) == original
+    if isinstance(original, list) and isinstance(copy, Points):
+        return original == copy.as_list() and np.array_equal(np.array(original), copy.array)
+    if isinstance(original, (list, tuple)):
+        return type(original) is type(copy) and len(original) == len(copy) and all(map(same, original, copy))
+    return bool(original == copy) and (isinstance(original, np.generic) or type(original) is type(copy))
 
 
 @pytest.mark.parametrize("protocol", [2, 3, 4, 5])

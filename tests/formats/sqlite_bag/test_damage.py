@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def messages() -> list[ros.Message]:
-    return sorted([*ros_drive.ego(), *ros_drive.others()], key=lambda message: message[2])
+    return sorted([*ros_drive.ego(), *ros_drive.road_users()], key=lambda message: message[2])
 
 
 @pytest.fixture

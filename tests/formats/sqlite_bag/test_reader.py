@@ -36,7 +36,7 @@ OF_THE_FILE = {"drive_id", "file_name", "sha256", "format"}
 
 def messages(n: int = 40) -> list[ros.Message]:
     info = "/carla/hero/vehicle_info", "carla_msgs/CarlaWorldInfo", ros_drive.T0, {"map_name": "town"}
-    return sorted([info, *ros_drive.ego(n=n), *ros_drive.others()[:n]], key=lambda message: message[2])
+    return sorted([info, *ros_drive.ego(n=n), *ros_drive.road_users()[:n]], key=lambda message: message[2])
 
 
 def read(path: Path, **options: Any) -> Trace:

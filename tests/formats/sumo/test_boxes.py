@@ -21,11 +21,11 @@ BUS = (
 LAST = 1.9
 
 
-def changed(change: dict[float, str], who: str = "b.0") -> list[dict[str, Any]]:
+def rows_with_types(change: dict[float, str], actor_id: str = "b.0") -> list[dict[str, Any]]:
     """The rows, in which a vehicle has another type from some times on."""
     return [
         row | {"type": [kind for since, kind in change.items() if float(row["time"]) >= since][-1]}
-        if row["id"] == who
+        if row["id"] == actor_id
         else row
         for row in ROWS
     ]
@@ -35,7 +35,7 @@ def changed(change: dict[float, str], who: str = "b.0") -> list[dict[str, Any]]:
 @pytest.mark.parametrize("base", ["bus", "bus@home", "DEFAULT_BIKETYPE"])
 def test_a_copy_for_one_vehicle_has_the_size_of_its_type(tmp_path: Path, form: str, base: str) -> None:
     put(tmp_path / "r.rou.xml", BUS.replace('id="bus"', 'id="bus@home"') if base == "bus@home" else BUS)
-    plain, copy = changed({0.0: base}), changed({0.0: base, 1.0: f"{base}@b.0"})
+    plain, copy = rows_with_types({0.0: base}), rows_with_types({0.0: base, 1.0: f"{base}@b.0"})
     write = xml if form == "xml" else csv
     expected = read(put(tmp_path / f"a.{form}", write(plain)), ego="a.0")
     trace = read(put(tmp_path / f"a.{form}", write(copy)), ego="a.0")
@@ -47,7 +47,7 @@ def test_a_copy_for_one_vehicle_has_the_size_of_its_type(tmp_path: Path, form: s
 
 def test_a_copy_that_is_known_has_its_own_size(tmp_path: Path) -> None:
     put(tmp_path / "r.rou.xml", BUS.replace("</routes>", '<vType id="bus@b.0" length="9" width="2"/></routes>'))
-    trace = read(put(tmp_path / "a.xml", xml(changed({0.0: "bus@b.0"}))), ego="a.0")
+    trace = read(put(tmp_path / "a.xml", xml(rows_with_types({0.0: "bus@b.0"}))), ego="a.0")
     assert actors(trace)["b.0"]["length_m"] == 9.0
     assert "copied_type" not in quality(trace)
 
@@ -55,27 +55,27 @@ def test_a_copy_that_is_known_has_its_own_size(tmp_path: Path) -> None:
 def test_the_copy_of_another_vehicle_is_no_copy(tmp_path: Path) -> None:
     """Somebody who calls types so himself: there is no vehicle `x`."""
     put(tmp_path / "r.rou.xml", BUS)
-    trace = read(put(tmp_path / "a.xml", xml(changed({0.0: "bus@x"}))), ego="a.0")
+    trace = read(put(tmp_path / "a.xml", xml(rows_with_types({0.0: "bus@x"}))), ego="a.0")
     assert actors(trace)["b.0"]["length_m"] is None
 
 
-@pytest.mark.parametrize("other", ["strange", "quick"])
-def test_a_track_has_one_reference_point(tmp_path: Path, other: str) -> None:
+@pytest.mark.parametrize("later_type", ["strange", "quick"])
+def test_a_track_has_one_reference_point(tmp_path: Path, later_type: str) -> None:
     """Where its type is not known or has another length, the place is not known: no jump from the centre to the bumper."""
     put(tmp_path / "r.rou.xml", BUS)
-    trace = read(put(tmp_path / "a.xml", xml(changed({0.0: "bus", 1.2: other}))), ego="a.0")
+    trace = read(put(tmp_path / "a.xml", xml(rows_with_types({0.0: "bus", 1.2: later_type}))), ego="a.0")
     places = [(row["x_m"], row["y_m"]) for row in states(trace, "b.0")]
     assert places[:12] == [(pytest.approx(50.0 + t - 6.0), pytest.approx(0.0)) for t in range(12)]
     assert places[12:] == [(None, None)] * 8
     assert actors(trace)["b.0"]["length_m"] == 12.0
     assert (quality(trace)["size_changes"]["n"], quality(trace)["size_changes"]["severity"]) == (8, "warning")
-    assert other in quality(trace)["size_changes"]["message"]
+    assert later_type in quality(trace)["size_changes"]["message"]
     assert not quality(trace).keys() & {"teleport", "size_varies", "bumper_position"}
 
 
 def test_two_types_of_one_length_are_one_track(tmp_path: Path) -> None:
     put(tmp_path / "r.rou.xml", BUS.replace("</routes>", '<vType id="tram" length="12" width="2.4"/></routes>'))
-    trace = read(put(tmp_path / "a.xml", xml(changed({0.0: "bus", 1.0: "tram"}))), ego="a.0")
+    trace = read(put(tmp_path / "a.xml", xml(rows_with_types({0.0: "bus", 1.0: "tram"}))), ego="a.0")
     assert at(trace, "b.0", LAST)["x_m"] == pytest.approx(50.0 + 19 - 6.0)
     assert "size_changes" not in quality(trace)
 

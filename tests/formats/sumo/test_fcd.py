@@ -82,7 +82,7 @@ _ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0"
 
 
 @pytest.mark.parametrize(
-    ("found", "change"),
+    ("part", "replacement"),
     [
         ("  </timestep>\n  <timestep", "  </timestep><timestep"),
         ("  </timestep>\n", "  </timestep>\n    " + _ROW),
@@ -111,9 +111,9 @@ _ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0"
     ],
 )
 @pytest.mark.parametrize("n", [1, -1])
-def test_what_is_not_line_by_line_is_left_to_the_parser(found: str, change: str, n: int) -> None:
-    text = xml(ROWS[:6]).replace(found, change, n)
-    assert change in text
+def test_what_is_not_line_by_line_is_left_to_the_parser(part: str, replacement: str, n: int) -> None:
+    text = xml(ROWS[:6]).replace(part, replacement, n)
+    assert replacement in text
     assert fcd_xml.columns_from_lines(text.encode()) is None
 
 
@@ -223,10 +223,10 @@ def test_vehicles_that_do_not_look_alike_are_parsed(tmp_path: Path, change: Any)
     assert set(actors(trace)) in ({"a.0", "b.0"}, {"a.0", "b&c"})
 
 
-@pytest.mark.parametrize("cut", [1, 30, 500])
-def test_a_file_that_breaks_off_is_refused(tmp_path: Path, cut: int) -> None:
+@pytest.mark.parametrize("n_letters", [1, 30, 500])
+def test_a_file_that_breaks_off_is_refused(tmp_path: Path, n_letters: int) -> None:
     with pytest.raises(TraceError, match="not well-formed"):
-        read(put(tmp_path / "a.xml", xml().rstrip()[:-cut]), ego="a.0")
+        read(put(tmp_path / "a.xml", xml().rstrip()[:-n_letters]), ego="a.0")
 
 
 @pytest.mark.parametrize("alike", [True, False])
@@ -257,7 +257,7 @@ def test_a_step_at_which_nobody_is_there_is_no_loss(tmp_path: Path, form: str) -
     """SUMO 1.28 writes a row with the time alone; a row with a place and no name is a loss."""
     put(tmp_path / "r.rou.xml", TYPES)
 
-    def written(**row: Any) -> str:
+    def write_with_row(**row: Any) -> str:
         text = csv() + ";".join(str(row.get(name, "")) for name in ("time", *list(ROWS[0])[1:])) + "\n"
         put(tmp_path / "a.csv", text)
         if form == "parquet":
@@ -265,7 +265,7 @@ def test_a_step_at_which_nobody_is_there_is_no_loss(tmp_path: Path, form: str) -
             pq.write_table(parsed, tmp_path / "a.parquet")
         return f"a.{form}"
 
-    empty = read(tmp_path / written(time=5.0), ego="a.0")
+    empty = read(tmp_path / write_with_row(time=5.0), ego="a.0")
     assert "dropped_row" not in quality(empty)
     assert len(states(empty)) == 40
-    assert quality(read(tmp_path / written(time=5.0, x=3.0), ego="a.0"))["dropped_row"]["n"] == 1
+    assert quality(read(tmp_path / write_with_row(time=5.0, x=3.0), ego="a.0"))["dropped_row"]["n"] == 1

@@ -17,7 +17,7 @@ from tests.formats.sumo.fcd_text import ROWS, TYPES, csv, table, xml
 MORE = ("pos", "lane", "edge", "slope")
 
 
-def named(how: str) -> pa.Table:
+def table_with_header(how: str) -> pa.Table:
     """The columns as `--output.column-header` of SUMO 1.28 has them, or called after a person; two steps of nobody (NULL) come first."""
     names = table().schema.names
     full = table()
@@ -46,11 +46,11 @@ def test_the_columns_names_are_known(tmp_path: Path, how: str, form: str, separa
     expected = read(put(tmp_path / "plain.csv", csv()), ego="a.0")
     path = tmp_path / f"a.{form}"
     if form == "parquet":
-        pq.write_table(named(how), path)
+        pq.write_table(table_with_header(how), path)
     else:
         rows = [
-            named(how).schema.names,
-            *([("" if v is None else v) for v in row.values()] for row in named(how).to_pylist()),
+            table_with_header(how).schema.names,
+            *([("" if v is None else v) for v in row.values()] for row in table_with_header(how).to_pylist()),
         ]
         put(path, "".join(separator.join(map(str, row)) + "\n" for row in rows))
     trace = read(path, ego="a.0")

@@ -27,17 +27,17 @@ ABOARD = range(10, 20)
 N = 30
 
 
-def rows(*, carried: str = "person", named: bool = False) -> list[Row]:
+def rows(*, carried: str = "person", with_vehicle: bool = False) -> list[Row]:
     """A cab comes by and stands for a second, somebody waits, rides in it from then on until it stands again, and walks off.
 
-    `named`: with the attribute `vehicle`.
+    `with_vehicle`: with the attribute `vehicle`.
     """
     found: list[Row] = []
     for t in range(N):
         cab = {"x": 20.0 + 2.0 * min(max(t, 9), 19), "y": -1.6, "angle": 90.0, "speed": 20.0 * (9 < t < 19)}
         own = {"x": 40.0 + 0.1 * t, "y": -7.8, "angle": 90.0, "speed": 1.0}
         found.append({"tag": "vehicle", "time": t / 10, "id": "cab1", **cab, "type": "cab", "lane": "a_1"})
-        more = {"vehicle": "cab1" if t in ABOARD else ""} if named else {}
+        more = {"vehicle": "cab1" if t in ABOARD else ""} if with_vehicle else {}
         found.append(
             {
                 "tag": carried,
@@ -118,9 +118,9 @@ def test_a_rider_is_no_road_user_and_a_walker_is_one(tmp_path: Path) -> None:
 
 def test_the_attribute_counts_more_than_the_place(tmp_path: Path) -> None:
     """The passenger of a vehicle that the log leaves out rides; who is said to ride in none, walks, wherever that is."""
-    alone = [row for row in rows(named=True) if row["id"] == "p" or row["time"] > 2]
+    alone = [row for row in rows(with_vehicle=True) if row["id"] == "p" or row["time"] > 2]
     assert len(states(read(put(tmp_path / "a.xml", xml(alone)), need_ego=False), "p")) == N - len(ABOARD)
-    walks = [row | {"vehicle": ""} if "vehicle" in row else row for row in rows(named=True)]
+    walks = [row | {"vehicle": ""} if "vehicle" in row else row for row in rows(with_vehicle=True)]
     assert len(states(read(put(tmp_path / "b.xml", xml(walks)), need_ego=False), "p")) == N
 
 

@@ -328,11 +328,11 @@ def test_degrees_are_not_read_as_radians(tmp_path: Path, turns: float, fits: boo
         read(table(tmp_path / "d.csv", lines), mapping=name)
 
 
-@pytest.mark.parametrize(("without", "refused"), [(19, False), (21, True)])
-def test_a_table_of_which_most_rows_are_lost_is_refused(tmp_path: Path, without: int, refused: bool) -> None:
+@pytest.mark.parametrize(("without", "is_refused"), [(19, False), (21, True)])
+def test_a_table_of_which_most_rows_are_lost_is_refused(tmp_path: Path, without: int, is_refused: bool) -> None:
     lines = ["t,id,x,y,yaw,vx,vy", *(f"{i / 10},{'' if i < without else 'a'},{i},0,0,10,0" for i in range(40))]
     name = mapping(tmp_path)
-    if refused:
+    if is_refused:
         with pytest.raises(TraceError, match=r"mapping 'mapping' cannot read 21 of 40 rows \(.*actor id is missing"):
             read(table(tmp_path / "d.csv", lines), mapping=name)
     else:

@@ -16,7 +16,7 @@ from tests.formats.logs import at, read
 from tests.formats.osi import osi_file, osi_log
 from tests.formats.ros2 import autoware_log as autoware
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import T0, ego, others, ticks
+from tests.formats.ros2.ros_drive import T0, ego, road_users, ticks
 from tests.shared_data import ROOT, shared
 from tests.watch.sources.windows import assert_window_is_span, assert_windows_are_spans, drained, times
 
@@ -81,7 +81,7 @@ def scene_messages() -> list[scenes.Message]:
         things = [scenes.entity("ego", t_s, 10.0 * t_s, frame="base")]
         things += [scenes.entity("again", t_s, 9.0)] if k == 20 else []
         gone = (scenes.deletion(t_s, "gone"),) if k == 10 else (scenes.deletion(t_s, "again"),) if k == 12 else ()
-        found.append(scenes.scene(t_s, *things, gone=gone))
+        found.append(scenes.scene(t_s, *things, deletions=gone))
     return found
 
 
@@ -97,7 +97,7 @@ def test_scene(tmp_path: Path, encoding: str) -> None:
 
 def test_scene_that_deletes_all(tmp_path: Path) -> None:
     messages = scene_messages()
-    messages.insert(40, scenes.scene(1.9, gone=(scenes.deletion(1.9),)))
+    messages.insert(40, scenes.scene(1.9, deletions=(scenes.deletion(1.9),)))
     source = McapSource(scenes.write(tmp_path / "log.mcap", messages), idle_s=0.0)
     frames = drained(source)
     window = assert_window_is_span(source, frames, tmp_path, slice(50, 70), EDGE_NS, ego="ego")
@@ -119,7 +119,7 @@ def ros_messages() -> list[ros.Message]:
     world = ("/carla/world_info", "carla_msgs/CarlaWorldInfo", T0, {"map_name": "Town01", "opendrive": "<OpenDRIVE/>"})
     lights = [ros.report("TurnIndicatorsReport", t_s + 0.01, report=2) for t_s in ticks(n=20, dt=0.1)]
     modes = [ros.report("ControlModeReport", T0 + t_s, mode=mode) for t_s, mode in ((0.1, 4), (0.2, 1))]
-    messages = [world, *transforms(), *others(), *ego(frame="odom", child="base_link"), *lights, *modes]
+    messages = [world, *transforms(), *road_users(), *ego(frame="odom", child="base_link"), *lights, *modes]
     return sorted(messages, key=lambda message: message[2])
 
 

@@ -52,25 +52,25 @@ def osi(path: Path, late: dict[int, int], **options: Any) -> Path:
     return osi_log.write(path / "late.mcap", messages, **options)
 
 
-def lost(trace: Trace) -> list[tuple[int | None, int | None]]:
+def lost_times(trace: Trace) -> list[tuple[int | None, int | None]]:
     rows = trace.tables["quality"].to_pylist()
     return [(row["t_first_ns"], row["t_last_ns"]) for row in rows if row["check_id"] == "lost_time"]
 
 
 def test_a_log_time_beyond_all_clocks_is_a_malformed_message_of_which_nobody_knows_when_it_was(tmp_path: Path) -> None:
-    assert lost(read(osi(tmp_path, {4: 2**63}))) == [(None, None)]
-    assert lost(read(osi(tmp_path, {}))) == []
+    assert lost_times(read(osi(tmp_path, {4: 2**63}))) == [(None, None)]
+    assert lost_times(read(osi(tmp_path, {}))) == []
 
 
 @pytest.mark.parametrize("write", ["ros", "foxglove"])
 def test_such_a_log_time_in_other_messages(tmp_path: Path, write: str) -> None:
     source = next(each for each in getattr(sources, write)(tmp_path) if each.name in {"ros", "json"})
-    path = source.written(tmp_path / "late")
+    path = source.write(tmp_path / "late")
     data = path.read_bytes()
-    assert not lost(read(path, ego=source.options.get("ego")))
+    assert not lost_times(read(path, ego=source.options.get("ego")))
     changed = with_late_message(data)
     path.write_bytes(changed)
-    assert lost(read(path, ego=source.options.get("ego"))) == [(None, None)]
+    assert lost_times(read(path, ego=source.options.get("ego"))) == [(None, None)]
 
 
 def with_late_message(data: bytes) -> bytes:
@@ -149,7 +149,7 @@ def test_a_column_that_stands_twice_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["data_log", "quality"])
 def test_a_date_that_python_does_not_have_is_refused(tmp_path: Path, name: str) -> None:
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     texts = {each: ["a"] for each in ("check_id", "severity", "message")} if name == "quality" else {}
     late = pa.array([2**30], pa.int32()).cast(pa.date32())
     pq.write_table(pa.table({**texts, "n": late}), folder / f"{name}.parquet")
@@ -158,7 +158,7 @@ def test_a_date_that_python_does_not_have_is_refused(tmp_path: Path, name: str) 
 
 
 def test_an_ego_without_an_id_is_none(tmp_path: Path) -> None:
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     actors = pq.read_table(folder / "actor.parquet", partitioning=None)
     ids = pa.array(
         [
@@ -175,7 +175,7 @@ def test_an_ego_without_an_id_is_none(tmp_path: Path) -> None:
 
 def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
     """`convert` and `check` write page checksums, and whatever reads Parquet holds the pages against those that there are."""
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     file = folder / "actor_state.parquet"
     column = pq.ParquetFile(file).metadata.row_group(0).column(4)
     data = bytearray(file.read_bytes())
@@ -200,12 +200,12 @@ def test_a_changed_page_of_our_own_parquet_is_refused(tmp_path: Path) -> None:
 )
 def test_what_ended_in_a_crash_is_refused_or_flagged(kind: str, number: int) -> None:
     with Driver() as driver:
-        (found,) = driver.run(Job(kind, 100, number, 1, judged=False))
+        (found,) = driver.run(Job(kind, 100, number, 1, is_judged=False))
     assert found.outcome in GOOD
 
 
 def test_bytes_that_look_like_the_seam_of_two_files_are_data(tmp_path: Path) -> None:
-    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    folder = sources.parquet(tmp_path)[0].write(tmp_path / "drive")
     states = pq.read_table(folder / "actor_state.parquet", partitioning=None)
     seam = pa.array(["\x10\0\0\0PAR1PAR1"] * states.num_rows)
     pq.write_table(states.append_column("note", seam), folder / "actor_state.parquet", compression="none")
@@ -229,7 +229,7 @@ def test_a_log_without_checksums_says_so(tmp_path: Path, kind: str) -> None:
     makers = {"osi-file": sources.osi_file, "folder": sources.parquet, "states": sources.parquet, "cars": sources.csv}
     found = makers.get(kind, sources.xml_traces)(tmp_path)
     source = next((each for each in found if each.name == kind), found[0])
-    said = quality(read(source.written(tmp_path / "log"), **source.options))["unprotected"]
+    said = quality(read(source.write(tmp_path / "log"), **source.options))["unprotected"]
     assert (said["severity"], "damage may remain undetected" in said["message"]) == ("info", True)
 
 
@@ -241,12 +241,12 @@ def test_a_film_of_impossible_frame_numbers_is_refused(tmp_path: Path) -> None:
     source = next(each for each in sources.csv(tmp_path) if each.name == "film")
     text = source.files["film.csv"].decode()
     for number in ("9223372036854775807", "1e18", "900000000"):
-        changed = source.written(tmp_path / number, {"film.csv": text.replace("\n7,", f"\n{number},").encode()})
+        changed = source.write(tmp_path / number, {"film.csv": text.replace("\n7,", f"\n{number},").encode()})
         found = quality(read(changed, **source.options))
         assert "malformed_row" in found
     every = re.sub(r"\n(\d+),", r"\n90000000\1,", text)
     with pytest.raises(TraceError, match="has no frame numbers"):
-        read(source.written(tmp_path / "every", {"film.csv": every.encode()}), **source.options)
+        read(source.write(tmp_path / "every", {"film.csv": every.encode()}), **source.options)
 
 
 def test_messages_of_another_encoding_are_refused(tmp_path: Path) -> None:
@@ -285,7 +285,7 @@ def test_a_definition_without_a_member_that_is_read(tmp_path: Path) -> None:
 
 def test_a_bag_with_a_part_that_is_not_listed_or_empty(tmp_path: Path) -> None:
     """What is not listed is not read: without a word, half of a drive would be judged as all of it."""
-    bag = next(each for each in sources.ros(tmp_path) if each.name == "bag").written(tmp_path / "drive")
+    bag = next(each for each in sources.ros(tmp_path) if each.name == "bag").write(tmp_path / "drive")
     read(bag)
     shutil.copy(bag / "drive_1.mcap", bag / "drive_2.mcap")
     with pytest.raises(TraceError, match=r"does not list drive_2\.mcap"):
@@ -297,7 +297,7 @@ def test_a_bag_with_a_part_that_is_not_listed_or_empty(tmp_path: Path) -> None:
 
 
 def test_a_description_of_a_bag_nested_without_end(tmp_path: Path) -> None:
-    bag = next(each for each in sources.ros(tmp_path) if each.name == "bag").written(tmp_path / "drive")
+    bag = next(each for each in sources.ros(tmp_path) if each.name == "bag").write(tmp_path / "drive")
     (bag / "metadata.yaml").write_text("rosbag2_bagfile_information: " + "[" * 20_000, encoding="utf-8")
     with pytest.raises(TraceError, match=r"its metadata\.yaml cannot be read"):
         read(bag)

@@ -50,7 +50,7 @@ def test_tracks_end_where_their_actors_are_put_upon_each_other() -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("actor", "neighbour"),
     [
         (put(walker("a", 150), 4.0), walker("b", 170)),
         (put(walker("a", 150), 4.0), put(walker("b", 170), 4.0, x=0.5)),
@@ -58,8 +58,8 @@ def test_tracks_end_where_their_actors_are_put_upon_each_other() -> None:
     ],
     ids=["alone", "half a metre beside", "one that was there always"],
 )
-def test_one_that_is_alone_there_goes_on(one: Actor, other: Actor) -> None:
-    trace = read(one, other)
+def test_one_that_is_alone_there_goes_on(actor: Actor, neighbour: Actor) -> None:
+    trace = read(actor, neighbour)
     assert max(t for name, t in last_seen(trace).items() if name.startswith("a")) == T[-1]
     assert "removed" not in {row["check_id"] for row in trace.tables["quality"].to_pylist()}
 
