@@ -21,7 +21,7 @@ from drivelint.fleet_report import drive_pages, moment_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
 from drivelint.result.counts import one_finding_per_event
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.report.synthetic import rule
@@ -238,13 +238,13 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
         ego_drive("b", sha256="same"),
     ]
     verdicts = [
-        said("a", "fail"),
-        said("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
+        drive_verdict("a", "fail"),
+        drive_verdict("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
     ]
     rules = [rule(profiles=[], status="draft"), rule("z-contact", profiles=[])]
     with duckdb.connect() as con:
         audits.add_rows(
-            con, drives, verdicts, [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
+            con, drives, verdicts, [drive_finding("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
@@ -270,12 +270,16 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
 
 
 def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> None:
-    twice = [found("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
+    twice = [drive_finding("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
     for row in twice:
         row |= {"t_start_s": 1.0, "t_worst_s": 1.0}
     with duckdb.connect() as con:
         audits.add_rows(
-            con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
+            con,
+            [ego_drive("a")],
+            [drive_verdict("a", "fail", profile=row["profile"]) for row in twice],
+            twice,
+            [rule()],
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))

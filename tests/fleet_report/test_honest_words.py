@@ -16,7 +16,7 @@ from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import Audit
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.fleet_report.told import Told, touched, words
 from tests.report.synthetic import rule
 
@@ -76,7 +76,9 @@ def test_the_header_names_contacts_and_how_sure_they_are() -> None:
 
 def test_rules_of_contacts_stand_above_others_of_their_severity() -> None:
     told = Told(
-        [ego_drive("a")], words("a", "fail"), [found("a", n_copies=None), found("a", occurrence=1), touched("a")]
+        [ego_drive("a")],
+        words("a", "fail"),
+        [drive_finding("a", n_copies=None), drive_finding("a", occurrence=1), touched("a")],
     )
     assert [each.rule_id for each in told.content.rates] == ["z-contact", "a-room"]
 
@@ -127,7 +129,7 @@ def test_a_situation_that_is_not_known_is_not_in_the_table_as_the_page_says() ->
 
 def test_the_page_says_why_rates_of_profiles_are_more_than_the_findings() -> None:
     def told(*profiles: str | None) -> Told:
-        verdicts = [said("a", "fail", rule_id="z-contact", profile=each) for each in profiles]
+        verdicts = [drive_verdict("a", "fail", rule_id="z-contact", profile=each) for each in profiles]
         return Told([ego_drive("a")], verdicts, [touched("a", n, profile=each) for n, each in enumerate(profiles)])
 
     why = "counts in both, and once in the headline"
@@ -179,7 +181,11 @@ def test_a_signal_is_advised_in_the_formats_that_lack_it() -> None:
         with duckdb.connect() as con:
             row = ego_drive("a", not_judged=lack, format=log_format)
             audits.add_rows(
-                con, [row], [said("a", "unknown", rule_id="a-room", reason_code="missing_indicator")], [], [needs]
+                con,
+                [row],
+                [drive_verdict("a", "unknown", rule_id="a-room", reason_code="missing_indicator")],
+                [],
+                [needs],
             )
             (each,) = missing_signals(con).signals
         return page._advice_on_signal(each)
@@ -195,7 +201,9 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
     drives = [ego_drive("a", not_judged=lack)]
     with duckdb.connect() as con:
         needs = rule("a-room", profiles=[], requires=["indicator", "map"])
-        audits.add_rows(con, drives, [said("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs])
+        audits.add_rows(
+            con, drives, [drive_verdict("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs]
+        )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         text = page.markdown(content_.fleet_content(con, audit, None, ())).decode()
@@ -204,7 +212,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
 
 
 def test_a_worst_drive_has_its_finding_the_time_and_the_command_that_explains_it() -> None:
-    findings = [found("a", margin=-50.0, t_worst_s=1.0), touched("a", object_id="439", margin=-0.1)]
+    findings = [drive_finding("a", margin=-50.0, t_worst_s=1.0), touched("a", object_id="439", margin=-0.1)]
     told = Told([ego_drive("a")], words("a", "fail"), findings)
     (row,) = told.html.xpath("//div[contains(@class, 'worst-table')]//tbody/tr")
     assert "No collision at 12.50 s, object 439" in " ".join(row.text_content().split()).replace(

@@ -20,7 +20,7 @@ from drivelint.fleet_report.audit_views import Audit
 from drivelint.fleet_report.difference import AuditDifference, difference
 from drivelint.fleet_report.figures import number_text
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.report.synthetic import rule
 
 pytestmark = pytest.mark.ci
@@ -36,12 +36,13 @@ def fleet(con: duckdb.DuckDBPyConnection, of: str, release: str, also: tuple[str
     name = f"drive-{release}"
     drives = [ego_drive(each, tags={"release": release}) for each in (name, *also)]
     verdicts = [
-        said(name, "fail" if k < failed else "pass", rule_id="overtake", occurrence=k, ref_id=None) for k in range(n)
+        drive_verdict(name, "fail" if k < failed else "pass", rule_id="overtake", occurrence=k, ref_id=None)
+        for k in range(n)
     ]
-    verdicts += [said(each, "pass", rule_id="follow", ref_id=None) for each in (name, *also)]
-    verdicts += [said(name, "pass", rule_id=each, ref_id=None) for each in ("silent", "still")]
+    verdicts += [drive_verdict(each, "pass", rule_id="follow", ref_id=None) for each in (name, *also)]
+    verdicts += [drive_verdict(name, "pass", rule_id=each, ref_id=None) for each in ("silent", "still")]
     findings = [
-        found(
+        drive_finding(
             name, rule_id="overtake", occurrence=k, finding_id=f"{name}-{k}", t_start_ns=k * 10**10, t_end_ns=k * 10**10
         )
         for k in range(failed)
@@ -122,7 +123,7 @@ def test_audits_without_rates_or_without_an_end_are_no_pass(disjoint: AuditDiffe
 def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
     with duckdb.connect() as con:
         fleet(con, "base_", "r1", ("shared",))
-        audits.add_rows(con, [ego_drive("shared")], [said("shared", "pass")], [], RULES)
+        audits.add_rows(con, [ego_drive("shared")], [drive_verdict("shared", "pass")], [], RULES)
         sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         told = difference(con, sides[0], sides[1], 50)
     assert told.counts["lost"] == 2
@@ -170,8 +171,8 @@ def test_new_findings_of_the_few_common_drives_are_still_listed() -> None:
     with duckdb.connect() as con:
         fleet(con, "base_", "r1", FEW)
         names = ("shared", *(f"other-{n}" for n in range(60)))
-        verdicts = [said(name, "fail", rule_id="overtake", ref_id=None) for name in names]
-        findings = [found(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
+        verdicts = [drive_verdict(name, "fail", rule_id="overtake", ref_id=None) for name in names]
+        findings = [drive_finding(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
         audits.add_rows(con, [ego_drive(name) for name in names], verdicts, findings, RULES)
         sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         told = difference(con, sides[0], sides[1], 50)
@@ -225,7 +226,9 @@ def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
     def told(n: int) -> Any:
         with duckdb.connect() as con:
             row = ego_drive("a")
-            audits.add_rows(con, [row], [said("a", "fail" if n else "pass")], [found("a")] * n, [rule(profiles=[])])
+            audits.add_rows(
+                con, [row], [drive_verdict("a", "fail" if n else "pass")], [drive_finding("a")] * n, [rule(profiles=[])]
+            )
             return rates(con)
 
     (change,) = rate_changes(told(0), told(1))
