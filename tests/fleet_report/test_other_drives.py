@@ -75,8 +75,8 @@ def test_audits_without_a_common_drive_are_told_as_such(disjoint: AuditDifferenc
 
 
 def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifference) -> None:
-    def code(asked: str | None) -> ExitCode:
-        return difference_text.exit_code(disjoint, difference_text.gating_severity(disjoint, asked))
+    def code(fail_on: str | None) -> ExitCode:
+        return difference_text.exit_code(disjoint, difference_text.gating_severity(disjoint, fail_on))
 
     assert code(None) == ExitCode.FAILED
     assert code("critical") == ExitCode.FAILED
@@ -141,11 +141,11 @@ def test_findings_of_added_drives_are_told_apart() -> None:
     assert difference_text.gating_severity(told, None) == "critical"
 
 
-FEW = ("shared", "lone-1", "lone-2", "lone-3")
+FOUR_DRIVES = ("shared", "lone-1", "lone-2", "lone-3")
 
 
 def test_fleets_with_few_common_drives_are_compared_by_rates() -> None:
-    told = compared(FEW, ("shared", "other-1", "other-2", "other-3"))
+    told = compared(FOUR_DRIVES, ("shared", "other-1", "other-2", "other-3"))
     assert told.headline == (
         "only 1 drive is in both audits: there 0 new, no earlier finding; 17 findings in 4 drives of the newer audit alone, "
         "2 findings in 4 drives of the base alone; compare rates"
@@ -169,7 +169,7 @@ def test_fleets_with_few_common_drives_are_compared_by_rates() -> None:
 
 def test_new_findings_of_the_few_common_drives_are_still_listed() -> None:
     with duckdb.connect() as con:
-        fleet(con, "base_", "r1", FEW)
+        fleet(con, "base_", "r1", FOUR_DRIVES)
         names = ("shared", *(f"other-{n}" for n in range(60)))
         verdicts = [drive_verdict(name, "fail", rule_id="overtake", ref_id=None) for name in names]
         findings = [drive_finding(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
@@ -223,7 +223,7 @@ def test_the_nearest_candidates_are_shown_where_nothing_is_called() -> None:
 
 
 def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
-    def told(n: int) -> Any:
+    def rates_with_findings(n: int) -> Any:
         with duckdb.connect() as con:
             row = ego_drive("a")
             audits.add_rows(
@@ -231,5 +231,5 @@ def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
             )
             return rates(con)
 
-    (change,) = rate_changes(told(0), told(1))
+    (change,) = rate_changes(rates_with_findings(0), rates_with_findings(1))
     assert [difference_text.ratio_text(each) for each in change.tests] == ["none before"] * 2

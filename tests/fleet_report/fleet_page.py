@@ -26,7 +26,7 @@ def words_of(element: Any) -> str:
     return " ".join(element.text_content().split())
 
 
-class Told:
+class FleetPage:
     """The page of a fleet as text."""
 
     def __init__(self, drives: list[Any], verdicts: list[Any], findings: list[Any], *by: str, **settings: Any) -> None:
@@ -46,7 +46,7 @@ class Told:
         return next(row for row in rows if name in str(row.xpath("string(th)")))
 
 
-def touched(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:
+def contact(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:
     return drive_finding(drive_id, rule_id="z-contact", finding_id=f"{drive_id}-{n}", t_worst_s=12.5, **over)
 
 
