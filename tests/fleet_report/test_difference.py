@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.fleet_report import page
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
@@ -167,10 +167,10 @@ def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path)
 def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_finding(tmp_path: Path) -> None:
     """Of its map it is not known whether it differs; the exit code is that of two checks."""
     drives = fleet.write(tmp_path / "fleet", 8)
-    judged(drives, tmp_path / "base")
+    run_audit(drives, tmp_path / "base")
     for log in (drives.manifest.parent / "logs").iterdir():
         log.write_bytes(log.read_bytes()[:100] + log.name.encode())  # each another content
-    judged(drives, tmp_path / "new")
+    run_audit(drives, tmp_path / "new")
     base, new = tmp_path / "base", tmp_path / "new"
     found = compared(base, new, "--fail-on", "never")
     assert [each["base_log"] for each in found["no_more_judged"]] == sorted(

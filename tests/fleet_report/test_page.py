@@ -18,7 +18,7 @@ from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.result.counts import SEVERITIES
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
@@ -204,12 +204,12 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     few = fleet.write(tmp_path / "fleet", 3, seed=1)
     log = min((tmp_path / "fleet" / "logs").iterdir())
     out = tmp_path / "out"
-    judged(few, out)
+    run_audit(few, out)
     assert not few.planted
     ran("report", out)
     assert page_of(out).xpath("//h1")[0].text_content().strip() == "No finding"
     log.write_bytes(log.read_bytes()[:100])
-    judged(few, out)
+    run_audit(few, out)
     ran("report", out)
     written = page_of(out)
     assert written.xpath("//h1")[0].text_content().strip() == "No finding, but not everything could be judged"
@@ -220,7 +220,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
 def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     out = tmp_path / "out"
-    judged(few, out, shard=(1, 1))
+    run_audit(few, out, shard=(1, 1))
     done = ran("report", out)
     assert "3 judged drives are not packed yet" in done.err
     assert "Not complete" in page_of(out).text_content()
