@@ -49,11 +49,11 @@ def drivelint(*args: str) -> subprocess.CompletedProcess[str]:
 
 
 Ran = Callable[..., tuple[int, str, str]]
-Refused = Callable[..., tuple[int, str]]
+CodeAndError = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture
-def refused(ran: Ran) -> Refused:
+def code_and_error(ran: Ran) -> CodeAndError:
     """Return a function that runs a command that must be refused and returns its exit code and one line."""
 
     def run(*args: str) -> tuple[int, str]:
@@ -67,7 +67,7 @@ def refused(ran: Ran) -> Refused:
 
 
 @pytest.fixture(scope="module")
-def checked(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
+def check_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
     out = tmp_path_factory.mktemp("overtakes")
     return drivelint("check", *TRACES, *ON_ROAD, *SDA, *PROFILES, NO_COPIES, "--out", str(out)), out
 
@@ -88,7 +88,7 @@ except SystemExit: print('|'.join(sorted(sys.modules)))
 
 
 @pytest.mark.parametrize(
-    ("args", "needed", "heavy"),
+    ("args", "packages", "heavy"),
     [
         pytest.param(["--help"], set(), "duckdb pyarrow numpy polars lxml mcap shapely yaml msgspec", id="help"),
         pytest.param(["rules", "list"], set(), "numpy pyarrow shapely mcap google lxml", id="rules without what logs need"),
@@ -100,7 +100,7 @@ except SystemExit: print('|'.join(sorted(sys.modules)))
     ],
 )  # fmt: skip
 def test_a_command_loads_nothing_heavy_that_it_does_not_need(
-    args: list[str], needed: set[str], heavy: str, tmp_path: Path
+    args: list[str], packages: set[str], heavy: str, tmp_path: Path
 ) -> None:
     """Which is why the help takes 0.12 s; a timed test would fail on a busy machine."""
     assert find_spec("pandas") is not None
@@ -108,7 +108,7 @@ def test_a_command_loads_nothing_heavy_that_it_does_not_need(
     command = [sys.executable, "-c", LOADED, *args]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path, env=env)
     loaded = {name.split(".")[0] for name in done.stdout.splitlines()[-1].split("|")}
-    assert {"drivelint", *needed} <= loaded
+    assert {"drivelint", *packages} <= loaded
     assert not loaded & set(heavy.split())
 
 
@@ -122,8 +122,8 @@ def test_no_command_shows_help_on_stderr() -> None:
     assert "check" in done.stderr
 
 
-def test_the_papers_verdicts_on_the_fixture(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
-    done, out = checked
+def test_the_papers_verdicts_on_the_fixture(check_run: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    done, out = check_run
     assert done.returncode == 1, done.stderr
     rows = pq.read_table(out / "verdicts.parquet").to_pylist()
     golden = {
@@ -139,8 +139,8 @@ def test_the_papers_verdicts_on_the_fixture(checked: tuple[subprocess.CompletedP
         assert row["required"] == pytest.approx(required[row["profile"]], abs=0.5)
 
 
-def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.CompletedProcess[str], Path]) -> None:
-    done, out = checked
+def test_text_is_for_people_and_goes_to_stdout(check_run: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    done, out = check_run
     assert "3 critical findings in 3 of 3 drives" in done.stdout
     assert "exit 1: 3 findings at or above" in done.stdout
     assert "\x1b" not in done.stdout
@@ -153,8 +153,10 @@ def test_text_is_for_people_and_goes_to_stdout(checked: tuple[subprocess.Complet
 
 
 @pytest.mark.ci
-def test_json_is_the_summary_and_nothing_else(checked: tuple[subprocess.CompletedProcess[str], Path], ran: Ran) -> None:
-    _, folder = checked
+def test_json_is_the_summary_and_nothing_else(
+    check_run: tuple[subprocess.CompletedProcess[str], Path], ran: Ran
+) -> None:
+    _, folder = check_run
     asked = [*reversed(TRACES), *ON_ROAD, *SDA, *PROFILES, NO_COPIES]
     code, out, err = ran("check", *asked, "--format", "json", "--quiet")
     assert out == (folder / "summary.json").read_text(encoding="utf-8")
@@ -202,9 +204,9 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("args", "code", "names"), MISTAKES)
 def test_a_mistake_is_one_line_with_the_right_exit_code(
-    args: list[str], code: int | None, names: str, refused: Refused
+    args: list[str], code: int | None, names: str, code_and_error: CodeAndError
 ) -> None:
-    got, line = refused(*args)
+    got, line = code_and_error(*args)
     assert names in line
     assert got == code or (code is None and got in {2, 4})
 
@@ -232,19 +234,19 @@ def test_if_no_log_can_be_judged_the_result_says_so_and_no_earlier_one_stays(
     assert "NOT JUDGED" in (out / "report.md").read_text(encoding="utf-8")
 
 
-def test_an_unreadable_mapping_is_named_with_its_place(tmp_path: Path, refused: Refused) -> None:
+def test_an_unreadable_mapping_is_named_with_its_place(tmp_path: Path, code_and_error: CodeAndError) -> None:
     mapping = tmp_path / "broken.toml"
     mapping.write_text('description = "x"\n[time\n', encoding="utf-8")
-    code, line = refused("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
+    code, line = code_and_error("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
     assert code == 2
     assert str(mapping) in line
 
 
-def test_a_log_without_an_ego_says_so(tmp_path: Path, refused: Refused) -> None:
+def test_a_log_without_an_ego_says_so(tmp_path: Path, code_and_error: CodeAndError) -> None:
     mapping = tmp_path / "no_ego.toml"
     text = (OVERTAKE / "mapping.toml").read_text(encoding="utf-8")
     mapping.write_text(text.replace('ids = ["ego"]', "ids = []"), encoding="utf-8")
-    code, line = refused("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
+    code, line = code_and_error("check", TRACES[0], *ON_ROAD[:2], "--mapping", str(mapping))
     assert code == 4
     assert "--ego" in line
 
@@ -260,19 +262,21 @@ def test_a_drive_that_cannot_be_judged_does_not_harm_the_others(tmp_path: Path, 
     assert {row["file_name"]: row["status"] for row in rows} == {"bad.csv": "not_judged", "safe.csv": "judged"}
 
 
-def test_a_map_of_another_place_is_named_not_blamed_on_the_driver(refused: Refused) -> None:
-    code, line = refused("check", TRACES[2], *ON_ROAD, "--map-offset", "5000,0")
+def test_a_map_of_another_place_is_named_not_blamed_on_the_driver(code_and_error: CodeAndError) -> None:
+    code, line = code_and_error("check", TRACES[2], *ON_ROAD, "--map-offset", "5000,0")
     assert code == 4
     assert "another place" in line
 
 
-def test_results_that_cannot_be_written_are_75(tmp_path: Path, refused: Refused) -> None:
+def test_results_that_cannot_be_written_are_75(tmp_path: Path, code_and_error: CodeAndError) -> None:
     (tmp_path / "taken").write_text("", encoding="utf-8")
     for more in ([], ["--margins"], ["--keep-db"]):
-        code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken" / "results"), *more)
+        code, line = code_and_error(
+            "check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken" / "results"), *more
+        )
         assert code == 75
         assert "taken" in line
-    code, line = refused("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken"))
+    code, line = code_and_error("check", TRACES[0], *ON_ROAD, *SDA, "--out", str(tmp_path / "taken"))
     assert (code, "is a file" in line) == (2, True)
 
 
@@ -328,11 +332,11 @@ def test_data_known_to_be_bad_make_no_pass_of_a_fail(name: str, tmp_path: Path, 
     assert not [row for row in rows if (row["rule_id"], row["profile"]) in failed and row["verdict"] == "pass"]
 
 
-def test_headings_in_another_unit_are_4(tmp_path: Path, refused: Refused) -> None:
+def test_headings_in_another_unit_are_4(tmp_path: Path, code_and_error: CodeAndError) -> None:
     lines = Path(TRACES[0]).read_text(encoding="utf-8").splitlines()
     turned = [lines[0], *(",".join([*c[:5], f"{float(c[5]) + 60:.3f}", *c[6:]]) for c in map(_cells, lines[1:]))]
     (tmp_path / "turned.csv").write_text("\n".join(turned) + "\n", encoding="utf-8")
-    code, line = refused("check", str(tmp_path / "turned.csv"), *ON_ROAD, *SDA)
+    code, line = code_and_error("check", str(tmp_path / "turned.csv"), *ON_ROAD, *SDA)
     assert (code, "heading is off the direction of motion" in line) == (4, True)
 
 
@@ -378,7 +382,7 @@ def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
 
 @pytest.mark.sample(6, ci=14)
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"PK\x03\x04rest", "a zip archive: unpack it"),
         (b"\x1f\x8b\x08rest", "compressed with gzip: unpack it"),
@@ -388,13 +392,13 @@ def test_rules_show_takes_how_an_id_begins(begins: str, ran: Ran) -> None:
 )
 @pytest.mark.parametrize("name", ["log.csv", "log.mcap", "log.osi", "log.parquet", "map.xodr"])
 def test_a_file_that_holds_the_file_is_named_as_such(
-    name: str, content: bytes, told: str, tmp_path: Path, ran: Ran
+    name: str, content: bytes, message: str, tmp_path: Path, ran: Ran
 ) -> None:
     (tmp_path / name).write_bytes(content)
     inputs = [TRACES[0], "--map", str(tmp_path / name)] if name == "map.xodr" else [str(tmp_path / name)]
     code, _, err = ran("check", *inputs, *(ON_ROAD[2:] if name == "map.xodr" else ()))
     assert code == 4
-    assert f"{name}: {told}" in err
+    assert f"{name}: {message}" in err
 
 
 def test_rules_show_tells_where_a_rule_is_from(ran: Ran) -> None:

@@ -64,25 +64,25 @@ class Case:
     """One version of one run: what was taken away, from whom, and when."""
 
     run: str
-    what: str
+    change: str
     span: str = ""
 
     @property
     def name(self) -> str:
         """The drive's id."""
-        return f"{self.run}/{self.what}/{self.span}"
+        return f"{self.run}/{self.change}/{self.span}"
 
 
 Blinding: TypeAlias = "Callable[[Drive, Span], Drive]"
 
 
-def _of(make: Callable[[Drive, str, Span], Drive], who: str) -> Blinding:
-    return lambda drive, span: make(drive, who, span)
+def _of(make: Callable[[Drive, str, Span], Drive], actor_id: str) -> Blinding:
+    return lambda drive, span: make(drive, actor_id, span)
 
 
 BLINDINGS: dict[str, Blinding] = {
-    **{f"nulled {who}": _of(blinding.nulled, who) for who in (VBP, OV, EGO)},
-    **{f"dropped {who}": _of(blinding.dropped, who) for who in (VBP, OV, EGO)},
+    **{f"nulled {actor_id}": _of(blinding.nulled, actor_id) for actor_id in (VBP, OV, EGO)},
+    **{f"dropped {actor_id}": _of(blinding.dropped, actor_id) for actor_id in (VBP, OV, EGO)},
     "moved 30 m": lambda drive, span: blinding.moved(drive, OV, span, 30.0),
     "moved 400 m": lambda drive, span: blinding.moved(drive, OV, span, 400.0),
     "moved VBP": lambda drive, span: blinding.moved(drive, VBP, span, 30.0),
@@ -115,7 +115,7 @@ def maps(road: MapTables) -> dict[str, MapTables | None]:
     }
 
 
-class Judged:
+class VerdictRows:
     """The verdict rows of every case: those of the quick tests are judged together, and all others when one of them is asked for."""
 
     def __init__(self) -> None:
@@ -135,7 +135,7 @@ class Judged:
         assert {row["rule_id"] for row in rows} == set(rules)
         return rows
 
-    def said(self, case: Case, rule: str) -> set[tuple[str, str]]:
+    def verdicts_and_reasons(self, case: Case, rule: str) -> set[tuple[str, str]]:
         """Return verdicts and reason codes."""
         return {(row["verdict"], row["reason_code"]) for row in self.of(case, rule)}
 
@@ -153,8 +153,8 @@ def whole_run(run: str) -> Drive:
 
 
 @pytest.fixture(scope="module")
-def judged() -> Judged:
-    return Judged()
+def verdict_rows() -> VerdictRows:
+    return VerdictRows()
 
 
 def spans(*, but: str = "") -> list[Any]:
@@ -175,20 +175,20 @@ def drives(names: Collection[str]) -> list[Drive]:
     for run in RUNS:
         whole = whole_run(run)
         assert whole.environment is not None
-        for what, make in BLINDINGS.items():
+        for change, make in BLINDINGS.items():
             for name in names:
                 span = SPANS[name]
-                if span == EVER and (what == "hole" or what.endswith(f" {EGO}")):
+                if span == EVER and (change == "hole" or change.endswith(f" {EGO}")):
                     continue
-                add(make(whole, span), Case(run, what, name))
+                add(make(whole, span), Case(run, change, name))
         if not FIRST_SPANS & set(names):
             continue
         add(whole, Case(run, "nothing"))
         for name, span in (CUTS | ENDS).items():
             add(blinding.cut(whole, span), Case(run, "cut", name))
-        for lost, environment in maps(whole.environment).items():
-            add(blinding.on(whole, environment), Case(run, f"no {lost}"))
-            add(blinding.on(blinding.dropped(whole, OV, EVER), environment), Case(run, f"no {lost}, no OV"))
+        for defect, environment in maps(whole.environment).items():
+            add(blinding.on(whole, environment), Case(run, f"no {defect}"))
+            add(blinding.on(blinding.dropped(whole, OV, EVER), environment), Case(run, f"no {defect}, no OV"))
         for range_m in (30.0, 60.0, 200.0):
             add(blinding.ranged(whole, range_m), Case(run, f"range {range_m:.0f}"))
             alone = blinding.dropped(blinding.ranged(whole, range_m), OV, EVER)
@@ -206,28 +206,28 @@ def touches(row: Row, span: Span) -> bool:
     return bool(row["t_start_ns"] / 1e9 <= span[1] + 1e-6 and row["t_end_ns"] / 1e9 >= span[0] - 1e-6)
 
 
-def boxes_tell(run: str, who: str) -> str:
+def boxes_tell(run: str, actor_id: str) -> str:
     """Return the verdict on a collision with an actor whose box is clear of the ego's at every step."""
-    return "unknown" if who == OV and run in IMPACT_RUNS else "pass"
+    return "unknown" if actor_id == OV and run in IMPACT_RUNS else "pass"
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_with_everything_there_it_does_pass(judged: Judged, run: str) -> None:
+def test_with_everything_there_it_does_pass(verdict_rows: VerdictRows, run: str) -> None:
     """Or else the tests below would hold for a checker that never passes anything."""
     case = Case(run, "nothing")
-    assert ("pass" in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE)}) is (run != "collision")
-    told = {(row["object_id"], row["verdict"]) for row in judged.of(case, NO_COLLISION)}
-    assert told == {(who, boxes_tell(run, who)) for who in (VBP, OV)}
-    assert "pass" in {row["verdict"] for row in judged.of(case, *SPACES_OV)}
+    assert ("pass" in {row["verdict"] for row in verdict_rows.of(case, SAFE_DISTANCE)}) is (run != "collision")
+    told = {(row["object_id"], row["verdict"]) for row in verdict_rows.of(case, NO_COLLISION)}
+    assert told == {(actor_id, boxes_tell(run, actor_id)) for actor_id in (VBP, OV)}
+    assert "pass" in {row["verdict"] for row in verdict_rows.of(case, *SPACES_OV)}
 
 
 @pytest.mark.parametrize("span", spans(but="ever"))
-@pytest.mark.parametrize("what", [f"nulled {OV}", f"dropped {OV}", "moved 30 m", "moved 400 m"])
-def test_no_pass_without_the_oncoming_vehicle(judged: Judged, what: str, span: str) -> None:
+@pytest.mark.parametrize("change", [f"nulled {OV}", f"dropped {OV}", "moved 30 m", "moved 400 m"])
+def test_no_pass_without_the_oncoming_vehicle(verdict_rows: VerdictRows, change: str, span: str) -> None:
     for run in RUNS:
-        case = Case(run, what, span)
-        rows = judged.of(case, SAFE_DISTANCE)
-        if what.startswith("moved") and span.endswith("start"):
+        case = Case(run, change, span)
+        rows = verdict_rows.of(case, SAFE_DISTANCE)
+        if change.startswith("moved") and span.endswith("start"):
             # it does come onto the road then, and how far it had to go at most is known: that may be too little, never enough
             rows = [row for row in rows if row["verdict"] != "fail"]
         assert {(row["verdict"], row["reason_code"]) for row in rows} == {("unknown", "null_value")}
@@ -235,34 +235,34 @@ def test_no_pass_without_the_oncoming_vehicle(judged: Judged, what: str, span: s
             assert f"actor {OV} " in row["reason"] or "observed pull-out and cut-in angles" in row["reason"], row[
                 "reason"
             ]
-        for row in judged.of(case, *SPACES_OV):
+        for row in verdict_rows.of(case, *SPACES_OV):
             assert row["verdict"] != "pass" or not touches(row, SPANS[span]), row
-        for row in judged.of(case, "ukhc.overtake-zone"):
+        for row in verdict_rows.of(case, "ukhc.overtake-zone"):
             assert row["verdict"] != "pass"
 
 
-@pytest.mark.parametrize("what", [f"nulled {OV}", "moved 30 m", "moved 400 m"])
-def test_no_pass_if_it_never_has_a_place_on_the_road(judged: Judged, what: str) -> None:
+@pytest.mark.parametrize("change", [f"nulled {OV}", "moved 30 m", "moved 400 m"])
+def test_no_pass_if_it_never_has_a_place_on_the_road(verdict_rows: VerdictRows, change: str) -> None:
     for run in RUNS:
-        case = Case(run, what, "ever")
-        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
-        assert {row["verdict"] for row in judged.of(case, *SPACES_OV)} == {"unknown"}
+        case = Case(run, change, "ever")
+        assert verdict_rows.verdicts_and_reasons(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+        assert {row["verdict"] for row in verdict_rows.of(case, *SPACES_OV)} == {"unknown"}
 
 
-def test_a_vehicle_that_the_log_never_names_is_nobody(judged: Judged) -> None:
+def test_a_vehicle_that_the_log_never_names_is_nobody(verdict_rows: VerdictRows) -> None:
     """With all of its rows gone nothing in the log tells that it was there: ground truth says that nobody came, and so do we."""
     for run in RUNS:
         case = Case(run, f"dropped {OV}", "ever")
-        for row in judged.of(case, SAFE_DISTANCE):
+        for row in verdict_rows.of(case, SAFE_DISTANCE):
             if row["profile"] != "observed":
                 assert row["verdict"] == "pass"
                 assert row["object_id"] is None
                 assert row["reason"].startswith("no oncoming vehicle within")
-        assert judged.said(case, SPACES_OV[0]) == {("not_applicable", "not_triggered")}
+        assert verdict_rows.verdicts_and_reasons(case, SPACES_OV[0]) == {("not_applicable", "not_triggered")}
 
 
 @cache
-def distances(run: str, who: str) -> dict[float, float]:
+def distances(run: str, actor_id: str) -> dict[float, float]:
     """Return second -> distance of the boxes of ego and actor, read off the raw states; positions are box centres here."""
     tables = read_trace(shared(f"overtake_case_study/{run}.csv"), IngestOptions(mapping="carla-testbench")).tables
     size = {row["actor_id"]: (row["length_m"] / 2, row["width_m"] / 2) for row in tables["actor"].to_pylist()}
@@ -273,16 +273,16 @@ def distances(run: str, who: str) -> dict[float, float]:
         rows = [row for row in tables["actor_state"].to_pylist() if row["actor_id"] == actor]
         return {r["t_ns"]: translate(rotate(flat, r["yaw_rad"], (0, 0), True), r["x_m"], r["y_m"]) for r in rows}
 
-    ego, other = outlines(EGO), outlines(who)
+    ego, other = outlines(EGO), outlines(actor_id)
     return {t / 1e9: ego[t].distance(other[t]) for t in ego.keys() & other.keys()}
 
 
-def kept_apart(run: str, who: str, span: Span, fresh_s: float = 0.0) -> bool:
+def kept_apart(run: str, actor_id: str, span: Span, fresh_s: float = 0.0) -> bool:
     """Whether ego and actor cannot have met in the span: at 60 m/s from where they were seen last or next.
 
     `fresh_s`: for so long a state without a successor is carried on by its velocity.
     """
-    apart = distances(run, who)
+    apart = distances(run, actor_id)
     lost = [t for t in apart if span[0] + fresh_s - 1e-6 <= t <= span[1] + 1e-6]
     before = max((t for t in apart if t < min(lost)), default=None)
     after = min((t for t in apart if t > max(lost)), default=None)
@@ -291,25 +291,29 @@ def kept_apart(run: str, who: str, span: Span, fresh_s: float = 0.0) -> bool:
 
 @pytest.mark.parametrize("span", spans())
 @pytest.mark.parametrize("how", ["nulled", "dropped"])
-@pytest.mark.parametrize("who", [VBP, OV])
-def test_no_collision_is_not_passed_over_a_blind_spot(judged: Judged, who: str, how: str, span: str) -> None:
+@pytest.mark.parametrize("actor_id", [VBP, OV])
+def test_no_collision_is_not_passed_over_a_blind_spot(
+    verdict_rows: VerdictRows, actor_id: str, how: str, span: str
+) -> None:
     for run in RUNS:
-        rows = judged.of(Case(run, f"{how} {who}", span), NO_COLLISION)
-        own = [row for row in rows if row["object_id"] == who]
+        rows = verdict_rows.of(Case(run, f"{how} {actor_id}", span), NO_COLLISION)
+        own = [row for row in rows if row["object_id"] == actor_id]
         # 2.5 periods after the last sample: two more steps
-        apart = kept_apart(run, who, SPANS[span], 0.2 if how == "dropped" else 0.0)
+        apart = kept_apart(run, actor_id, SPANS[span], 0.2 if how == "dropped" else 0.0)
         assert apart or all(row["verdict"] != "pass" for row in own if touches(row, SPANS[span]))
         if apart:
-            assert {row["verdict"] for row in own} == {boxes_tell(run, who)}
+            assert {row["verdict"] for row in own} == {boxes_tell(run, actor_id)}
         elif how == "nulled" or span in {"0.3", "0.5", "2", "5"}:
             assert "unknown" in {row["verdict"] for row in own}
-        other = {(row["object_id"], row["verdict"]) for row in rows if row["object_id"] not in {who, None}}
-        assert other == {(each, boxes_tell(run, each)) for each in {VBP, OV} - {who}}
+        other = {(row["object_id"], row["verdict"]) for row in rows if row["object_id"] not in {actor_id, None}}
+        assert other == {(each, boxes_tell(run, each)) for each in {VBP, OV} - {actor_id}}
 
 
-def test_a_track_that_ends_near_the_ego_is_unknown_from_there_on(judged: Judged) -> None:
+def test_a_track_that_ends_near_the_ego_is_unknown_from_there_on(verdict_rows: VerdictRows) -> None:
     for run in RUNS:
-        rows = [row for row in judged.of(Case(run, f"dropped {VBP}", "end"), NO_COLLISION) if row["object_id"] == VBP]
+        rows = [
+            row for row in verdict_rows.of(Case(run, f"dropped {VBP}", "end"), NO_COLLISION) if row["object_id"] == VBP
+        ]
         assert [(row["verdict"], row["reason_code"]) for row in rows] == [
             ("pass", "kept"),
             ("unknown", "lost_near_ego"),
@@ -319,51 +323,53 @@ def test_a_track_that_ends_near_the_ego_is_unknown_from_there_on(judged: Judged)
 
 @pytest.mark.parametrize("span", spans())
 @pytest.mark.parametrize("how", ["nulled", "dropped"])
-def test_no_pass_without_the_vehicle_being_passed(judged: Judged, how: str, span: str) -> None:
+def test_no_pass_without_the_vehicle_being_passed(verdict_rows: VerdictRows, how: str, span: str) -> None:
     for run in RUNS:
         case = Case(run, f"{how} {VBP}", span)
         if (how, span) == ("dropped", "ever"):  # nothing in the log tells that there was anybody to pass
-            assert judged.said(case, SAFE_DISTANCE) == {("not_applicable", "not_triggered")}
+            assert verdict_rows.verdicts_and_reasons(case, SAFE_DISTANCE) == {("not_applicable", "not_triggered")}
             continue
-        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
-        assert {row["verdict"] for row in judged.of(case, "ukhc.r163.pull-out-separation")} == {"unknown"}
-        for row in judged.of(case, SPACE_VBP):
+        assert verdict_rows.verdicts_and_reasons(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+        assert {row["verdict"] for row in verdict_rows.of(case, "ukhc.r163.pull-out-separation")} == {"unknown"}
+        for row in verdict_rows.of(case, SPACE_VBP):
             assert row["verdict"] != "pass" or not touches(row, SPANS[span]), row
 
 
 @pytest.mark.parametrize("span", spans())
-def test_a_vehicle_beside_the_road_is_not_being_passed(judged: Judged, span: str) -> None:
+def test_a_vehicle_beside_the_road_is_not_being_passed(verdict_rows: VerdictRows, span: str) -> None:
     """The parked one has a position and it is off the lanes: known, so there is no overtake, or not one of it."""
     for run in RUNS:
-        assert judged.said(Case(run, "moved VBP", span), SAFE_DISTANCE) == {("not_applicable", "not_triggered")}
+        assert verdict_rows.verdicts_and_reasons(Case(run, "moved VBP", span), SAFE_DISTANCE) == {
+            ("not_applicable", "not_triggered")
+        }
 
 
 @pytest.mark.parametrize("span", spans(but="ever"))
-@pytest.mark.parametrize("what", [f"nulled {EGO}", f"dropped {EGO}", "hole"])
-def test_no_pass_of_what_the_ego_did_unseen(judged: Judged, what: str, span: str) -> None:
+@pytest.mark.parametrize("change", [f"nulled {EGO}", f"dropped {EGO}", "hole"])
+def test_no_pass_of_what_the_ego_did_unseen(verdict_rows: VerdictRows, change: str, span: str) -> None:
     """Where the way out of the lane lies in the blind spot, it is not known when or whether it was safe."""
     for run in RUNS:
-        case = Case(run, what, span)
-        assert "pass" not in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
-        assert "fail" not in {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
-        assert "pass" not in {row["verdict"] for row in judged.of(case, "ukhc.r163.pull-out-separation")}
-        for row in judged.of(case, NO_COLLISION, "ukhc.r124.speed-limit", *SPACES_OV, SPACE_VBP):
+        case = Case(run, change, span)
+        assert "pass" not in {row["verdict"] for row in verdict_rows.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
+        assert "fail" not in {row["verdict"] for row in verdict_rows.of(case, SAFE_DISTANCE, "ukhc.overtake-zone")}
+        assert "pass" not in {row["verdict"] for row in verdict_rows.of(case, "ukhc.r163.pull-out-separation")}
+        for row in verdict_rows.of(case, NO_COLLISION, "ukhc.r124.speed-limit", *SPACES_OV, SPACE_VBP):
             within = (SPANS[span][0] + 1e-3, SPANS[span][1] - 1e-3)
-            who = row["object_id"]
-            apart = row["rule_id"] == NO_COLLISION and who is not None and kept_apart(run, who, SPANS[span])
+            actor_id = row["object_id"]
+            apart = row["rule_id"] == NO_COLLISION and actor_id is not None and kept_apart(run, actor_id, SPANS[span])
             assert apart or row["verdict"] != "pass" or not touches(row, within), row
         if span in {"0.3", "0.5", "2"}:
-            assert judged.said(case, SAFE_DISTANCE) == {("unknown", "null_value")}
-            assert {row["reason"] for row in judged.of(case, SAFE_DISTANCE)} == {
+            assert verdict_rows.verdicts_and_reasons(case, SAFE_DISTANCE) == {("unknown", "null_value")}
+            assert {row["reason"] for row in verdict_rows.of(case, SAFE_DISTANCE)} == {
                 "the log does not show the beginning of the overtake: record the ego from before it"
             }
 
 
 @pytest.mark.parametrize("span", [each for each in spans() if each.values[0] in {"0.3", "0.5", "2", "5"}])
-def test_a_hole_is_a_row_of_its_own(judged: Judged, span: str) -> None:
+def test_a_hole_is_a_row_of_its_own(verdict_rows: VerdictRows, span: str) -> None:
     for run in RUNS:
         for rule in (NO_COLLISION, "ukhc.r124.speed-limit"):
-            holes = [row for row in judged.of(Case(run, "hole", span), rule) if row["reason_code"] == "log_hole"]
+            holes = [row for row in verdict_rows.of(Case(run, "hole", span), rule) if row["reason_code"] == "log_hole"]
             assert holes
             assert {row["verdict"] for row in holes} == {"unknown"}
             for row in holes:
@@ -372,25 +378,25 @@ def test_a_hole_is_a_row_of_its_own(judged: Judged, span: str) -> None:
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_a_log_that_begins_too_late(judged: Judged, run: str) -> None:
+def test_a_log_that_begins_too_late(verdict_rows: VerdictRows, run: str) -> None:
     for name in ("at t0", "from t0 on", "passing"):
-        verdicts = {row["verdict"] for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
+        verdicts = {row["verdict"] for row in verdict_rows.of(Case(run, "cut", name), SAFE_DISTANCE)}
         assert verdicts == {"unknown"}, name
     if run != "collision":  # which is off its lane for most of what is left, so that its registration is in doubt
-        rows = judged.of(Case(run, "cut", "before t0"), SAFE_DISTANCE)
-        whole = judged.of(Case(run, "nothing"), SAFE_DISTANCE)
+        rows = verdict_rows.of(Case(run, "cut", "before t0"), SAFE_DISTANCE)
+        whole = verdict_rows.of(Case(run, "nothing"), SAFE_DISTANCE)
         assert [row["verdict"] for row in rows] == [row["verdict"] for row in whole]
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_a_log_that_ends_too_early(judged: Judged, run: str) -> None:
+def test_a_log_that_ends_too_early(verdict_rows: VerdictRows, run: str) -> None:
     """t0 was seen, so its distance stands; what comes later is not claimed: what was driven may be too much already, and never enough.
 
     While the ego may still speed up, it is not known whether a distance that is too small at its speed at t0 was: see `MAY_SPEED_UP`.
     """
-    whole = {row["profile"]: row["verdict"] for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    whole = {row["profile"]: row["verdict"] for row in verdict_rows.of(Case(run, "nothing"), SAFE_DISTANCE)}
     for name, span in ENDS.items():
-        rows = {row["profile"]: row for row in judged.of(Case(run, "cut", name), SAFE_DISTANCE)}
+        rows = {row["profile"]: row for row in verdict_rows.of(Case(run, "cut", name), SAFE_DISTANCE)}
         observed = rows.pop("observed")["verdict"]
         assert rows.keys() == whole.keys() - {"observed"}
         for profile, row in rows.items():
@@ -398,65 +404,67 @@ def test_a_log_that_ends_too_early(judged: Judged, run: str) -> None:
             expected = ("unknown", "may_speed_up") if is_open else (whole[profile], None)
             assert (row["verdict"], row["cause_code"]) == expected, (name, profile)
         assert observed == "unknown" or observed == whole["observed"] == "fail"
-        for row in judged.of(Case(run, "cut", name), *SPACES_OV, SPACE_VBP, NO_COLLISION):
+        for row in verdict_rows.of(Case(run, "cut", name), *SPACES_OV, SPACE_VBP, NO_COLLISION):
             assert row["t_end_ns"] / 1e9 <= span[1] + 1e-6
-        cut_in = {row["verdict"] for row in judged.of(Case(run, "cut", name), "ukhc.r163.cut-in")}
+        cut_in = {row["verdict"] for row in verdict_rows.of(Case(run, "cut", name), "ukhc.r163.cut-in")}
         assert cut_in <= {"unknown", "not_applicable"}
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_a_lost_lane(judged: Judged, run: str) -> None:
+def test_a_lost_lane(verdict_rows: VerdictRows, run: str) -> None:
     for case in (Case(run, "no running lane"), Case(run, "no running lane, no OV")):
-        assert judged.said(case, SAFE_DISTANCE) == {("unknown", "missing_registration")}
-        assert {row["verdict"] for row in judged.of(case, *SPACES_OV, "ukhc.r124.speed-limit")} == {"unknown"}
+        assert verdict_rows.verdicts_and_reasons(case, SAFE_DISTANCE) == {("unknown", "missing_registration")}
+        assert {row["verdict"] for row in verdict_rows.of(case, *SPACES_OV, "ukhc.r124.speed-limit")} == {"unknown"}
     for case in (Case(run, "no overtaking lane"), Case(run, "no overtaking lane, no OV")):
-        assert {row["verdict"] for row in judged.of(case, SAFE_DISTANCE, "ukhc.r124.speed-limit")} == {"unknown"}
-        for row in judged.of(case, SAFE_DISTANCE):
+        assert {row["verdict"] for row in verdict_rows.of(case, SAFE_DISTANCE, "ukhc.r124.speed-limit")} == {"unknown"}
+        for row in verdict_rows.of(case, SAFE_DISTANCE):
             assert "the ego is on a lane" in row["reason"] or "no lane on the overtaking side" in row["reason"]
 
 
-@pytest.mark.parametrize("lost", ["lane ahead", "link ahead", "every link"])
+@pytest.mark.parametrize("defect", ["lane ahead", "link ahead", "every link"])
 @pytest.mark.parametrize("run", RUNS)
-def test_a_missing_link_never_makes_the_road_longer(judged: Judged, run: str, lost: str) -> None:
+def test_a_missing_link_never_makes_the_road_longer(verdict_rows: VerdictRows, run: str, defect: str) -> None:
     """The OV is then met on its way onto what is left of the corridor; where nobody is, only as much as is left is known."""
-    whole = {row["profile"]: row for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
-    for row in judged.of(Case(run, f"no {lost}"), SAFE_DISTANCE):
+    whole = {row["profile"]: row for row in verdict_rows.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    for row in verdict_rows.of(Case(run, f"no {defect}"), SAFE_DISTANCE):
         if row["observed"] is not None:
             assert row["observed"] <= whole[row["profile"]]["observed"] + 0.01
             assert row["observed"] >= whole[row["profile"]]["observed"] - 5
-    if lost == "every link":
-        for row in judged.of(Case(run, f"no {lost}, no OV"), SAFE_DISTANCE):
+    if defect == "every link":
+        for row in verdict_rows.of(Case(run, f"no {defect}, no OV"), SAFE_DISTANCE):
             assert row["verdict"] == "unknown"
             assert row["profile"] == "observed" or row["reason_code"] == "only_a_bound"
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_without_a_map_or_a_side_of_the_road(judged: Judged, run: str) -> None:
-    for lost, code in (("map", "missing_map"), ("handedness", "missing_handedness")):
-        for case in (Case(run, f"no {lost}"), Case(run, f"no {lost}, no OV")):
+def test_without_a_map_or_a_side_of_the_road(verdict_rows: VerdictRows, run: str) -> None:
+    for defect, code in (("map", "missing_map"), ("handedness", "missing_handedness")):
+        for case in (Case(run, f"no {defect}"), Case(run, f"no {defect}, no OV")):
             for rule in (SAFE_DISTANCE, SPACE_VBP, "ukhc.overtake-zone", *SPACES_OV):
-                assert judged.said(case, rule) == {("unknown", code)}
-    assert judged.said(Case(run, "no map"), "ukhc.r124.speed-limit") == {("unknown", "missing_map")}
-    assert judged.said(Case(run, "no map"), "ukhc.r145.off-road") == {("unknown", "missing_map")}
+                assert verdict_rows.verdicts_and_reasons(case, rule) == {("unknown", code)}
+    assert verdict_rows.verdicts_and_reasons(Case(run, "no map"), "ukhc.r124.speed-limit") == {
+        ("unknown", "missing_map")
+    }
+    assert verdict_rows.verdicts_and_reasons(Case(run, "no map"), "ukhc.r145.off-road") == {("unknown", "missing_map")}
     codes = {"pass": ("pass", "kept"), "unknown": ("unknown", "null_value")}
-    told = {codes[boxes_tell(run, who)] for who in (VBP, OV)}
-    assert judged.said(Case(run, "no map"), NO_COLLISION) == told  # boxes and speeds need no map
+    told = {codes[boxes_tell(run, actor_id)] for actor_id in (VBP, OV)}
+    assert verdict_rows.verdicts_and_reasons(Case(run, "no map"), NO_COLLISION) == told  # boxes and speeds need no map
 
 
 @pytest.mark.parametrize("run", RUNS)
 @pytest.mark.parametrize("range_m", [30, 60, 200])
-def test_a_finite_sensor_range(judged: Judged, run: str, range_m: int) -> None:
+def test_a_finite_sensor_range(verdict_rows: VerdictRows, run: str, range_m: int) -> None:
     """What came into range later was not seen before; what left it may still be there."""
     case = Case(run, f"range {range_m}")
-    whole = {row["profile"]: row for row in judged.of(Case(run, "nothing"), SAFE_DISTANCE)}
-    for row in judged.of(case, SAFE_DISTANCE):
+    whole = {row["profile"]: row for row in verdict_rows.of(Case(run, "nothing"), SAFE_DISTANCE)}
+    for row in verdict_rows.of(case, SAFE_DISTANCE):
         seen = whole[row["profile"]]["observed"] is not None and whole[row["profile"]]["observed"] + 4.8 < range_m
         if seen:
             assert row["verdict"] == whole[row["profile"]]["verdict"]
         else:
             assert row["verdict"] == "unknown"
             assert row["observed"] is None or row["observed"] < range_m
-    lost = [row for row in judged.of(case, NO_COLLISION) if row["verdict"] == "unknown"]
+    lost = [row for row in verdict_rows.of(case, NO_COLLISION) if row["verdict"] == "unknown"]
     if range_m == 30 and run != "collision":
         assert {row["object_id"] for row in lost} == {VBP, OV}
     assert {row["reason_code"] for row in lost if not hit(row)} <= {"lost_near_ego", "lost_in_range"}
@@ -464,12 +472,12 @@ def test_a_finite_sensor_range(judged: Judged, run: str, range_m: int) -> None:
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_a_short_sensor_range_cannot_tell_that_nobody_is_coming(judged: Judged, run: str) -> None:
+def test_a_short_sensor_range_cannot_tell_that_nobody_is_coming(verdict_rows: VerdictRows, run: str) -> None:
     """Where it reaches less far than ego and an oncoming vehicle at the limit need to stop, nothing is claimed."""
     for rule in SPACES_OV:
-        assert {row["verdict"] for row in judged.of(Case(run, "range 30, no OV"), rule)} == {"unknown"}
-        assert {row["verdict"] for row in judged.of(Case(run, "range 200, no OV"), rule)} == {"not_applicable"}
-    for row in judged.of(Case(run, "range 30, no OV"), SAFE_DISTANCE):
+        assert {row["verdict"] for row in verdict_rows.of(Case(run, "range 30, no OV"), rule)} == {"unknown"}
+        assert {row["verdict"] for row in verdict_rows.of(Case(run, "range 200, no OV"), rule)} == {"not_applicable"}
+    for row in verdict_rows.of(Case(run, "range 30, no OV"), SAFE_DISTANCE):
         assert row["verdict"] == "unknown"
 
 

@@ -35,7 +35,7 @@ class Alone(NamedTuple):
     result: Result
     out: Path
     files: dict[str, bytes]
-    told: Counter
+    counter: Counter
 
 
 class Counter(Progress):
@@ -53,7 +53,7 @@ class Counter(Progress):
 
 
 @pytest.fixture(scope="module")
-def asked(tmp_path_factory: pytest.TempPathFactory) -> CheckOptions:
+def options(tmp_path_factory: pytest.TempPathFactory) -> CheckOptions:
     """Return a check of six logs: one of them is damaged, one is there twice, and a mapping is noted once of all."""
     home = tmp_path_factory.mktemp("jobs")
     logs = {path.name: path for path in demo.write(home / "demo")}
@@ -73,27 +73,27 @@ def files(out: Path) -> dict[str, bytes]:
     return {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
 
 
-def written(asked: CheckOptions, out: Path, jobs: int, progress: Progress) -> Result:
+def write_check(options: CheckOptions, out: Path, jobs: int, progress: Progress) -> Result:
     with working_folder(out) as work:
-        found = parallel.check(replace(asked, out=work), jobs, progress)
+        found = parallel.check(replace(options, out=work), jobs, progress)
         write(found, out, work)
     return found
 
 
 @pytest.fixture(scope="module")
-def alone(asked: CheckOptions, tmp_path_factory: pytest.TempPathFactory) -> Alone:
+def alone(options: CheckOptions, tmp_path_factory: pytest.TempPathFactory) -> Alone:
     """Return what one process comes to, writes and tells."""
-    out, told = tmp_path_factory.mktemp("alone") / "out", Counter()
-    return Alone(written(asked, out, 1, told), out, files(out), told)
+    out, counter = tmp_path_factory.mktemp("alone") / "out", Counter()
+    return Alone(write_check(options, out, 1, counter), out, files(out), counter)
 
 
 @pytest.mark.ci
-def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Alone, tmp_path: Path) -> None:
+def test_several_processes_write_the_bytes_of_one(options: CheckOptions, alone: Alone, tmp_path: Path) -> None:
     expected, out, by_one, one = alone
     two = Counter()
     shutil.rmtree(out)  # paths in the result are relative to its folder
     with record_inputs(OutputPathTest(out), []) as recorder:
-        found = written(asked, out, 2, two)
+        found = write_check(options, out, 2, two)
     assert files(out) == by_one
     assert sum(name.endswith(".mcap") for name in by_one) == 4
     damaged, mapping, again = "not judged: ", "collision.mcap: mapping ", "the same content as the log of "
@@ -102,9 +102,9 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
     assert found.notes == expected.notes
     assert len(one.notes) == len(two.notes)  # which log is the first with a note is by chance on the screen
     assert two.n_done == 5
-    read = {path for path in recorder._states if path.startswith(asked.traces[0]) and path.endswith(".mcap")}
+    read = {path for path in recorder._states if path.startswith(options.traces[0]) and path.endswith(".mcap")}
     assert len(read) == 6
-    assert str(asked.map) in recorder._states
+    assert str(options.map) in recorder._states
     assert recorder.trouble is None
 
 
@@ -124,22 +124,22 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
 
 
 @pytest.mark.ci
-def test_an_interrupted_check_of_several_processes_says_so(asked: CheckOptions) -> None:
+def test_an_interrupted_check_of_several_processes_says_so(options: CheckOptions) -> None:
     interruption = Interruption()
     interruption.requested = True
     with pytest.raises(NothingJudgedError):
-        parallel.check(replace(asked, annotate=False), 2, Progress(), interruption=interruption)
+        parallel.check(replace(options, annotate=False), 2, Progress(), interruption=interruption)
 
 
 @pytest.mark.parametrize(
-    ("most", "cut"), [(1, ["aBcd"]), (2, ["aB", "cd"]), (3, ["a", "B", "cd"]), (9, ["a", "B", "c", "d"])]
+    ("max_parts", "parts"), [(1, ["aBcd"]), (2, ["aB", "cd"]), (3, ["a", "B", "cd"]), (9, ["a", "B", "c", "d"])]
 )
-def test_parts_are_neighbours_of_about_as_many_bytes(tmp_path: Path, most: int, cut: list[str]) -> None:
+def test_parts_are_neighbours_of_about_as_many_bytes(tmp_path: Path, max_parts: int, parts: list[str]) -> None:
     paths = [tmp_path / name for name in "aBcd"]
     for path in paths:
         path.write_bytes(bytes(2000 if path.name.isupper() else 1000))
     paths[2].write_bytes(bytes(1100))
-    assert ["".join(path.name for path in part) for part in parallel._cut_into_parts(paths, most)] == cut
+    assert ["".join(path.name for path in part) for part in parallel._cut_into_parts(paths, max_parts)] == parts
 
 
 def test_a_log_that_cannot_be_looked_at_is_in_a_part(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ OMEGA = {"x": "x_m", "y": "y_m", "yaw": "yaw_rad", "vel_x": "vx_mps", "vel_y": "
 EGOS = ("ego", "once", "oncoming", "parked")
 # where anybody judged at the same time ever was, the corridor is looked at: more cells of it are kept, nobody else is in them
 TABLES = [table for table in declarations.column_comments() if table not in ("drive", "rule", "_corridor_cell")]
-FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
+TWO_RULES = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")  # where it is not the rules that matter
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
 
 
@@ -88,7 +88,7 @@ def test_tracks_are_the_same_wherever_the_egos_are_cut(
     for room in (batch.EGO_ACTOR_PAIRS_PER_PART, 1):
         monkeypatch.setattr(batch, "EGO_ACTOR_PAIRS_PER_PART", room)
         monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", room)
-        found.append(check(settings(ragged, ego="all", rules=FEW, out=tmp_path / str(room)), Silent()).tracks)
+        found.append(check(settings(ragged, ego="all", rules=TWO_RULES, out=tmp_path / str(room)), Silent()).tracks)
     assert found[0].num_rows == 4
     assert found[0].equals(found[1])
 
@@ -148,7 +148,7 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
         plain(con, *args, **options)
 
     monkeypatch.setattr("drivelint.engine.session.evaluate", third)
-    asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True, rules=FEW)
+    asked = settings(ragged, FIXTURE / "safe.csv", ego="all", out=tmp_path, keep_db=True, rules=TWO_RULES)
     result = check(asked, Silent())
     assert len(calls) == 3 + 3
     assert dict(zip(*(result.drives[c].to_pylist() for c in ("file_name", "status")), strict=True)) == {
@@ -166,9 +166,9 @@ def test_a_drive_of_which_a_part_fails_leaves_nothing(
 def test_a_drive_that_cannot_be_read_harms_no_other(tmp_path: Path) -> None:
     broken = tmp_path / "broken.csv"
     broken.write_text("<html>404</html>\n", encoding="utf-8")
-    alone = check(settings(FIXTURE / "safe.csv", rules=FEW), Silent())
+    alone = check(settings(FIXTURE / "safe.csv", rules=TWO_RULES), Silent())
     notes = Notes()
-    both = check(settings(broken, FIXTURE / "safe.csv", rules=FEW), notes)
+    both = check(settings(broken, FIXTURE / "safe.csv", rules=TWO_RULES), notes)
     assert both.verdicts.equals(alone.verdicts)
     by_name = {row["file_name"]: row for row in both.drives.to_pylist()}
     assert by_name["broken.csv"]["status"] == "not_judged"
@@ -189,7 +189,7 @@ def test_a_drive_that_the_engine_chokes_on_harms_no_other(monkeypatch: pytest.Mo
         derive(con, *args, **options)
 
     monkeypatch.setattr("drivelint.engine.session.derive", choking)
-    result = check(settings(*logs(), rules=FEW), Silent())
+    result = check(settings(*logs(), rules=TWO_RULES), Silent())
     status = {row["file_name"]: (row["status"], row["status_reason"]) for row in result.drives.to_pylist()}
     assert status["safe.csv"][0] == "not_judged"
     assert "more memory" in status["safe.csv"][1]
@@ -202,7 +202,7 @@ def test_the_same_log_twice_is_judged_once(tmp_path: Path) -> None:
     copy = tmp_path / "safe.csv"
     shutil.copy(FIXTURE / "safe.csv", copy)
     notes = Notes()
-    result = check(settings(FIXTURE / "safe.csv", copy, rules=FEW), notes)
+    result = check(settings(FIXTURE / "safe.csv", copy, rules=TWO_RULES), notes)
     assert result.drives.num_rows == 1
     assert any("judged once" in line for line in notes.said)
 
@@ -215,16 +215,16 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "told"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "is on a lane or other area")]
+    ("offset", "message"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "is on a lane or other area")]
 )
-def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
-    with pytest.raises(MapError, match=r"^map road\.xodr is of another place than safe\.csv: .*" + told):
+def test_a_map_of_another_place_is_refused(offset: tuple[float, float], message: str) -> None:
+    with pytest.raises(MapError, match=r"^map road\.xodr is of another place than safe\.csv: .*" + message):
         check(settings(FIXTURE / "safe.csv", map_offset=offset), Silent())
 
 
 @pytest.mark.sample(0, ci=2)
 @pytest.mark.parametrize(
-    ("road", "told"),
+    ("road", "message"),
     [
         (lambda _: b"road works", "is not XML"),
         (lambda text: text[:1000], "not well-formed"),
@@ -237,20 +237,20 @@ def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: st
     ],
 )
 def test_a_map_of_the_log_itself_that_cannot_be_used_leaves_the_other_rules(
-    tmp_path: Path, road: Any, told: str
+    tmp_path: Path, road: Any, message: str
 ) -> None:
     order = ConvertRequest(
         str(FIXTURE / "safe.csv"), "parquet", tmp_path / "d", mapping=str(FIXTURE / "mapping.toml"), ego="ego"
     )
     folder = convert(order).path
     (folder / "map.xodr").write_bytes(road((FIXTURE / "road.xodr").read_bytes()))
-    result = check(settings(folder, map=None, mapping=None, rules=FEW), Silent())
+    result = check(settings(folder, map=None, mapping=None, rules=TWO_RULES), Silent())
     judged = {row["rule_id"]: row for row in result.verdicts.to_pylist()}
     assert judged["ukhc.no-collision"]["verdict"] == "pass"
     assert judged["ukhc.r162.safe-distance-ahead"]["verdict"] == "unknown"
     assert judged["ukhc.r162.safe-distance-ahead"]["reason_code"] == "missing_map"
     assert judged["ukhc.r162.safe-distance-ahead"]["reason"].startswith("the log's own map is not used: ")
-    assert told in judged["ukhc.r162.safe-distance-ahead"]["reason"]
+    assert message in judged["ukhc.r162.safe-distance-ahead"]["reason"]
     assert [row["map_name"] for row in result.drives.to_pylist()] == [None]
     again = convert(ConvertRequest(str(folder), "mcap", tmp_path / "again"))
     assert any("the log's own map" in note for note in again.notes)
@@ -331,15 +331,16 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.sample(1, ci=3)
-@pytest.mark.parametrize(("moved_m", "told"), [(0.0, None), (-0.6, None), (0.8, "0.80 m"), (-1.1, "1.10 m")])
-def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, told: str | None) -> None:
+@pytest.mark.parametrize(("moved_m", "distance"), [(0.0, None), (-0.6, None), (0.8, "0.80 m"), (-1.1, "1.10 m")])
+def test_a_map_moved_by_less_than_half_a_lane_is_warned_of(moved_m: float, distance: str | None) -> None:
     """The ego of the fixture keeps to the middle of its lane."""
-    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, moved_m), rules=FEW), Silent())
+    result = check(settings(FIXTURE / "safe.csv", map_offset=(0.0, moved_m), rules=TWO_RULES), Silent())
     (drive,) = result.drives.to_pylist()
     found = [(q["severity"], q["message"]) for q in drive["quality"] if q["check_id"] == "aside_of_lane"]
-    assert len(found) == (told is not None)
+    assert len(found) == (distance is not None)
     assert all(
-        severity == "warning" and words.startswith(f"ego keeps {told} beside the middle") for severity, words in found
+        severity == "warning" and words.startswith(f"ego keeps {distance} beside the middle")
+        for severity, words in found
     )
     assert not drive["lossy"]
 

@@ -190,5 +190,5 @@ def _bytes(record: Any) -> bytes:
     return bytes(builder.end())  # type: ignore[no-untyped-call]
 
 
-def _read(read: Callable[[ReadDataStream], Any], record: Record) -> Any:
-    return read(ReadDataStream(io.BytesIO(record.body)))
+def _read(read_content: Callable[[ReadDataStream], Any], record: Record) -> Any:
+    return read_content(ReadDataStream(io.BytesIO(record.body)))

@@ -29,7 +29,7 @@ from drivelint.result.geometry import without_geometry
 from drivelint.result.publishing import OutputError
 from tests.annotate.files import seeking, streaming, verify
 from tests.annotate.runs import CASE, ROOT, run, the
-from tests.annotate.viewer import SCENES, messages, played, points, shown, yaw
+from tests.annotate.viewer import SCENES, messages, played, points, visible_entities, yaw
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -80,7 +80,7 @@ def rows(out: Path, table: str, drive: str) -> list[dict[str, Any]]:
     return [row for row in found.to_pylist() if row["drive_id"] == drive]
 
 
-def known(row: Mapping[str, Any]) -> dict[str, Any]:
+def annotated_values(row: Mapping[str, Any]) -> dict[str, Any]:
     # logs are annotated before copies with recording errors are judged
     return {key: value for key, value in row.items() if value is not None and key not in {"n_copies", "n_stays"}}
 
@@ -92,14 +92,18 @@ def test_every_verdict_and_finding_is_a_message_at_its_time(out: Path, name: str
     verify(path)
     verdicts = rows(out, "verdicts", path.stem)
     said = messages(path, "verdicts")
-    assert sorted(map(repr, (json.loads(m.content) for m in said))) == sorted(map(repr, map(known, verdicts)))
+    assert sorted(map(repr, (json.loads(m.content) for m in said))) == sorted(
+        map(repr, map(annotated_values, verdicts))
+    )
     for message in said:
         row = json.loads(message.content)
         due = [row[key] for key in ("t_ref_ns", "t_worst_ns", "t_start_ns") if key in row]
         assert message.log_time == (due[0] if due else 0)
     findings = rows(out, "findings", path.stem)
     found = messages(path, "findings")
-    assert sorted(map(repr, (json.loads(m.content) for m in found))) == sorted(map(repr, map(known, findings)))
+    assert sorted(map(repr, (json.loads(m.content) for m in found))) == sorted(
+        map(repr, map(annotated_values, findings))
+    )
     assert all(m.log_time == json.loads(m.content)["t_start_ns"] for m in found)
     assert bool(found) == (len(findings) > 0)
 
@@ -157,9 +161,9 @@ def test_lanes_lie_under_everybody_and_are_there_from_the_start(out: Path) -> No
 @pytest.mark.ci
 def test_a_finding_shows_the_pair_concerned_and_says_what_is_wrong(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
-    entities = shown(path, "markers", T0)
+    entities = visible_entities(path, "markers", T0)
     pair, label = entities["ego and oncoming"], entities["notes on ego"]
-    boxes = shown(path, "scene", T0)
+    boxes = visible_entities(path, "scene", T0)
     ends = [boxes[name].cubes[0].pose.position for name in (EGO, ONCOMING)]
     assert len(pair.lines) == 3
     assert points(pair.lines[2])[:, :2] == pytest.approx(np.array([[p.x, p.y] for p in ends]))
@@ -180,7 +184,7 @@ def test_near_misses_are_drawn_too(logged: tuple[Path, Path]) -> None:
     near = [row for row in rows(path.parents[1], "verdicts", path.stem) if row["near_miss"]]
     assert "ukhc.no-collision" in {row["rule_id"] for row in near}
     for row in near:
-        texts = [t.text for e in shown(path, "markers", row["t_worst_ns"] + LATER).values() for t in e.texts]
+        texts = [t.text for e in visible_entities(path, "markers", row["t_worst_ns"] + LATER).values() for t in e.texts]
         assert any(f"NEAR MISS {row['rule_id'].removeprefix('ukhc.')}" in text for text in texts)
 
 
@@ -192,7 +196,7 @@ def test_after_a_jump_a_viewer_shows_what_it_shows_when_it_plays(out: Path, name
     for topic in SCENES:
         assert all(said.content.entities or topic in {"markers", "danger_spaces"} for said in messages(path, topic))
         for t in times[5::17]:
-            assert shown(path, topic, t).keys() == played(path, topic, t).keys()
+            assert visible_entities(path, topic, t).keys() == played(path, topic, t).keys()
 
 
 @pytest.mark.ci
@@ -203,8 +207,8 @@ def test_nothing_stays_behind_a_finding(out: Path) -> None:
         last = max([*ends, *near]) + 2_100_000_000
         final = messages(path, "scene")[-1].log_time
         if last < final:
-            assert not shown(path, "markers", last)
-    assert not shown(the(out / "annotated", "safe"), "danger_spaces", final)
+            assert not visible_entities(path, "markers", last)
+    assert not visible_entities(the(out / "annotated", "safe"), "danger_spaces", final)
 
 
 @pytest.mark.ci
@@ -212,7 +216,7 @@ def test_danger_spaces_are_as_long_as_the_stopping_distance(out: Path) -> None:
     path = the(out / "annotated", "safe")
     drawn = messages(path, "danger_spaces")
     assert drawn[0].log_time == T0
-    boxes = shown(path, "scene", T0)
+    boxes = visible_entities(path, "scene", T0)
     (entity,) = drawn[0].content.entities
     before = {e.id: e for said in messages(path, "scene", ending_before=T0)[-1:] for e in said.content.entities}
     own, theirs = (points(line)[:, :2] for line in entity.lines)
@@ -282,7 +286,7 @@ def test_a_recorded_log_keeps_every_message_and_ours_lie_at_its_frames(logged: t
         if (row := json.loads(said.content))["rule_id"].endswith("safe-distance-ahead") and row["profile"] == "nominal"
     )
     assert ours.log_time == json.loads(ours.content)["t_ref_ns"] + LATER
-    assert shown(path, "markers", ours.log_time)
+    assert visible_entities(path, "markers", ours.log_time)
 
 
 @pytest.mark.slow
@@ -319,7 +323,9 @@ def test_a_drive_with_too_many_boxes_shows_every_nth_step(
     every = round(len(whole) / len(fewer))
     assert [said.log_time for said in fewer] == [said.log_time for said in whole][::every]
     assert every > 1
-    assert shown(path, "scene", fewer[6].log_time - 1).keys() == {EGO, PARKED, ONCOMING}, "boxes live until the next"
+    assert visible_entities(path, "scene", fewer[6].log_time - 1).keys() == {EGO, PARKED, ONCOMING}, (
+        "boxes live until the next"
+    )
     with path.open("rb") as file:
         (said,) = (m.metadata for m in SeekingReader(file).iter_metadata())
     assert said["boxes"].startswith("every ")
@@ -356,7 +362,7 @@ def test_a_trace_that_begins_before_zero_lies_at_zero_and_says_so(tmp_path: Path
     (tmp_path / "early.csv").write_text("\n".join([lines[0], *map(",".join, earlier)]), encoding="utf-8")
     path = the(run(tmp_path / "out", tmp_path / "early.csv"), "early")
     assert messages(path, "scene")[0].log_time == 0
-    assert shown(path, "danger_spaces", T0), "two seconds earlier in a log that is shown two seconds later"
+    assert visible_entities(path, "danger_spaces", T0), "two seconds earlier in a log that is shown two seconds later"
     with path.open("rb") as file:
         (said,) = (m.metadata for m in SeekingReader(file).iter_metadata())
     assert said["time"] == "log time = time of the trace + 2000000000 ns"

@@ -28,7 +28,7 @@ from tests.annotate.viewer import messages, yaw
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from tests.annotate.viewer import Said
+    from tests.annotate.viewer import TimedMessage
 
 NAMES = ("safe", "near_miss", "collision")
 EGO, PARKED, ONCOMING = "ego", "parked", "oncoming"
@@ -44,8 +44,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def content(found: Iterable[Said]) -> list[dict[str, Any]]:
-    return [json.loads(said.content) for said in found]
+def content(timed_messages: Iterable[TimedMessage]) -> list[dict[str, Any]]:
+    return [json.loads(said.content) for said in timed_messages]
 
 
 def margin_topics(path: Path) -> list[str]:

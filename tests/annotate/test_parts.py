@@ -24,7 +24,7 @@ VIEWER_TYPES = {"string", "number", "integer", "boolean", "array"}
 
 
 @cache
-def made(name: str) -> Any:
+def message_class(name: str) -> Any:
     """Return the class of a Foxglove message, from our own declaration."""
     pool = descriptor_pool.DescriptorPool()
     for file in descriptor_pb2.FileDescriptorSet.FromString(foxglove.schema(name).data).file:
@@ -63,7 +63,7 @@ def test_what_is_written_of_a_place_is_declared_as_foxglove_declares_it(name: st
 @settings(deadline=None)
 @given(st.integers(0, 2**63 - 1))
 def test_times_are_read_back(t_ns: int) -> None:
-    stamp = made("Log").FromString(wire.time(1, t_ns)).timestamp
+    stamp = message_class("Log").FromString(wire.time(1, t_ns)).timestamp
     assert stamp.seconds * 10**9 + stamp.nanos == t_ns
 
 
@@ -72,7 +72,7 @@ def test_times_are_read_back(t_ns: int) -> None:
 def test_columns_of_times_are_read_back(times: list[int]) -> None:
     column = wire.timestamps(1, np.array(times, np.uint64))
     assert len({row.tobytes().__len__() for row in column}) == 1
-    read = [made("Log").FromString(row.tobytes()).timestamp.ToNanoseconds() for row in column]
+    read = [message_class("Log").FromString(row.tobytes()).timestamp.ToNanoseconds() for row in column]
     assert read == times
     assert timestamp_pb2.Timestamp.FromString(column[0, 2:].tobytes()).ToNanoseconds() == times[0]
 
@@ -80,13 +80,13 @@ def test_columns_of_times_are_read_back(times: list[int]) -> None:
 @settings(deadline=None)
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False)] * 3), max_size=4), st.integers(0, 2**20), st.text(max_size=300))
 def test_fields_are_read_back(xyz: list[tuple[float, float, float]], whole: int, text: str) -> None:
-    line = made("SceneUpdate")().entities.add().lines.add()
+    line = message_class("SceneUpdate")().entities.add().lines.add()
     line.ParseFromString(
         wire.points(5, np.array(xyz, np.float64).reshape(-1, 3)) + wire.indices(8, np.array([whole], np.uint32))
     )
     assert [(p.x, p.y, p.z) for p in line.points] == xyz
     assert list(line.indices) == [whole]
-    log = made("Log").FromString(wire.text(3, text) + wire.integer(2, whole))
+    log = message_class("Log").FromString(wire.text(3, text) + wire.integer(2, whole))
     assert log.message == text.encode("utf-8", "replace").decode()
     assert log.level == whole
 

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 SCENES = ("map", "scene", "danger_spaces", "markers")
 
 
-class Said(NamedTuple):
+class TimedMessage(NamedTuple):
     """A message: when, and its content."""
 
     log_time: int
     content: Any
 
 
-def messages(path: Path, topic: str, **query: Any) -> list[Said]:
+def messages(path: Path, topic: str, **query: Any) -> list[TimedMessage]:
     """Return the messages of one of our topics, decoded by the schema that the file carries (JSON: as bytes)."""
     decode: dict[int, Any] = {}
     found = []
@@ -34,7 +34,7 @@ def messages(path: Path, topic: str, **query: Any) -> list[Said]:
         ):
             assert schema is not None
             if schema.encoding != "protobuf":
-                found.append(Said(message.log_time, message.data))
+                found.append(TimedMessage(message.log_time, message.data))
                 continue
             if schema.id not in decode:
                 pool = descriptor_pool.DescriptorPool()
@@ -45,11 +45,11 @@ def messages(path: Path, topic: str, **query: Any) -> list[Said]:
             content.DiscardUnknownFields()
             assert content.ByteSize() <= len(message.data)
             assert content == decode[schema.id].FromString(content.SerializeToString()), "nothing that a reader skips"
-            found.append(Said(message.log_time, content))
+            found.append(TimedMessage(message.log_time, content))
     return found
 
 
-def shown(path: Path, topic: str, t: int) -> dict[str, Any]:
+def visible_entities(path: Path, topic: str, t: int) -> dict[str, Any]:
     """Return the entities on a topic after a jump to log time `t`: those of the last message there, if they still live."""
     before = messages(path, topic, ending_at=t)
     if not before:

@@ -43,7 +43,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def checked(drives: Path) -> drivelint.CheckResult:
+def check_result(drives: Path) -> drivelint.CheckResult:
     logs = [drives / "near-miss.mcap", drives / "safe.mcap"]
     return drivelint.check(logs, map=drives / "road.xodr", robustness=False)  # the slow tests have copies
 
@@ -71,11 +71,11 @@ def test_the_keywords_are_the_options_with_their_defaults() -> None:
 
 @pytest.mark.slow
 def test_write_writes_the_bytes_of_the_command_line(
-    checked: drivelint.CheckResult, drives: Path, tmp_path: Path
+    check_result: drivelint.CheckResult, drives: Path, tmp_path: Path
 ) -> None:
     said = [drives / "near-miss.mcap", drives / "safe.mcap", "--map", drives / "road.xodr"]
     command_line("check", *said, "--out", tmp_path / "a", "--no-annotate", "--no-robustness", code=1)
-    assert checked.write(tmp_path / "b") == tmp_path / "b"
+    assert check_result.write(tmp_path / "b") == tmp_path / "b"
     theirs, ours = files(tmp_path / "a"), files(tmp_path / "b")
     assert set(theirs) >= {f"{name}.parquet" for name in TABLE_OF_FILE} | {"report.html", "run.json", "summary.json"}
     assert theirs == ours
@@ -175,21 +175,21 @@ def test_a_margin_says_its_time_its_unit_and_its_finding(drives: Path) -> None:
     assert found.margins.describe().rows()[-1]["meaning"].startswith("the finding to which this failing step belongs")
 
 
-def test_the_tables_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
-    folder = checked.write(tmp_path / "out")
+def test_the_tables_are_those_of_the_files(check_result: drivelint.CheckResult, tmp_path: Path) -> None:
+    folder = check_result.write(tmp_path / "out")
     opened = drivelint.open(str(folder))
     for name in TABLE_OF_FILE:
-        ours, theirs = getattr(checked, name), getattr(opened, name)
+        ours, theirs = getattr(check_result, name), getattr(opened, name)
         assert ours.arrow().equals(theirs.arrow())
-        assert ours is checked.tables[name]
+        assert ours is check_result.tables[name]
         assert len(ours) == pq.read_metadata(folder / f"{name}.parquet").num_rows
-    assert len(checked.verdicts)
-    assert checked.exit_code == 1
-    assert opened.report() == checked.report() == (folder / "report.html").read_text("utf-8")
+    assert len(check_result.verdicts)
+    assert check_result.exit_code == 1
+    assert opened.report() == check_result.report() == (folder / "report.html").read_text("utf-8")
 
 
-def test_a_table_is_arrow_polars_and_pandas(checked: drivelint.CheckResult) -> None:
-    table = checked.findings
+def test_a_table_is_arrow_polars_and_pandas(check_result: drivelint.CheckResult) -> None:
+    table = check_result.findings
     arrow = table.arrow()
     assert pa.table(table).equals(arrow)
     assert table.pl().to_arrow().column("finding_id").to_pylist() == arrow["finding_id"].to_pylist()
@@ -199,31 +199,33 @@ def test_a_table_is_arrow_polars_and_pandas(checked: drivelint.CheckResult) -> N
     assert "finding_id" in repr(table)
 
 
-def test_a_table_gives_columns_and_rows(checked: drivelint.CheckResult) -> None:
-    table = checked.findings
+def test_a_table_gives_columns_and_rows(check_result: drivelint.CheckResult) -> None:
+    table = check_result.findings
     assert table["margin"].to_list() == table.arrow()["margin"].to_pylist()
     assert list(table) == table.rows()
     with pytest.raises(KeyError, match="did you mean 'margin'"):
         table["margn"]
 
 
-def test_geometries_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+def test_geometries_are_those_of_the_files(check_result: drivelint.CheckResult, tmp_path: Path) -> None:
     geopandas = pytest.importorskip("geopandas")
-    folder = checked.write(tmp_path / "out")
+    folder = check_result.write(tmp_path / "out")
     for name in ("findings", "lanes", "tracks"):
-        mine, theirs = getattr(checked, name).geo(), geopandas.read_parquet(folder / f"{name}.parquet")
+        mine, theirs = getattr(check_result, name).geo(), geopandas.read_parquet(folder / f"{name}.parquet")
         assert len(mine) > 0
         assert mine.geometry.name == "geom"
         assert mine.geometry.geom_equals(theirs.geometry).all()
     with pytest.raises(drivelint.DriveLintError, match="has no geometry"):
-        checked.verdicts.geo()
+        check_result.verdicts.geo()
 
 
-def test_a_timeline_has_what_the_log_and_the_rule_say(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+def test_a_timeline_has_what_the_log_and_the_rule_say(check_result: drivelint.CheckResult, tmp_path: Path) -> None:
     (found,) = [
-        row for row in checked.findings if row["rule_id"].endswith("ds-disjoint") and row["drive_id"].startswith("near")
+        row
+        for row in check_result.findings
+        if row["rule_id"].endswith("ds-disjoint") and row["drive_id"].startswith("near")
     ]
-    table = checked.timeline(found["finding_id"])
+    table = check_result.timeline(found["finding_id"])
     rows = {row["t_ns"]: row for row in table}
     assert list(rows) == sorted(rows)
     worst = rows[found["t_worst_ns"]]
@@ -243,13 +245,13 @@ def test_a_timeline_has_what_the_log_and_the_rule_say(checked: drivelint.CheckRe
 
 @pytest.mark.slow
 def test_an_explanation_is_that_of_the_command_line(
-    checked: drivelint.CheckResult, drives: Path, tmp_path: Path
+    check_result: drivelint.CheckResult, drives: Path, tmp_path: Path
 ) -> None:
-    name = checked.sql("SELECT finding_id FROM findings WHERE rule_id = 'ukhc.r162.safe-distance-ahead'").rows()[0][
-        "finding_id"
-    ]
-    told = checked.explain(name)
-    folder = checked.write(tmp_path / "out")
+    name = check_result.sql("SELECT finding_id FROM findings WHERE rule_id = 'ukhc.r162.safe-distance-ahead'").rows()[
+        0
+    ]["finding_id"]
+    told = check_result.explain(name)
+    folder = check_result.write(tmp_path / "out")
     env = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     line = [sys.executable, "-m", "drivelint", "explain", name, "--in", str(folder)]
     done = subprocess.run(line, check=True, capture_output=True, text=True, timeout=120, env=env)
@@ -258,7 +260,7 @@ def test_an_explanation_is_that_of_the_command_line(
     assert told._repr_html_().startswith("<pre>")
     assert "font-family: monospace" in told._repr_html_(), "the page of a notebook may have another font for <pre>"
     with pytest.raises(drivelint.DriveLintError, match="nowhere"):
-        checked.explain("nowhere")
+        check_result.explain("nowhere")
 
 
 @pytest.mark.slow
@@ -288,20 +290,22 @@ def test_the_demo_is_that_of_the_command_line(tmp_path: Path) -> None:
     assert {path.name: path.read_bytes() for path in paths} == demo.contents()
 
 
-def test_sql_reads_the_tables_by_name(checked: drivelint.CheckResult) -> None:
+def test_sql_reads_the_tables_by_name(check_result: drivelint.CheckResult) -> None:
     query = "SELECT drive_id, count(*) AS n FROM findings JOIN rules USING (rule_id) WHERE severity = $s GROUP BY ALL ORDER BY ALL"
-    (row,) = checked.sql("SELECT count(*) AS n FROM findings WHERE severity = ?", ["critical"]).rows()
-    named = checked.sql(query.replace("severity", "findings.severity"), {"s": "critical"})
+    (row,) = check_result.sql("SELECT count(*) AS n FROM findings WHERE severity = ?", ["critical"]).rows()
+    named = check_result.sql(query.replace("severity", "findings.severity"), {"s": "critical"})
     assert sum(each["n"] for each in named.rows()) == row["n"] > 0
 
 
-def test_columns_of_one_name_are_told_apart(checked: drivelint.CheckResult) -> None:
+def test_columns_of_one_name_are_told_apart(check_result: drivelint.CheckResult) -> None:
     """polars takes no two of one name, and a dictionary has one."""
-    joined = checked.sql("SELECT * FROM findings f JOIN drives d USING (drive_id) JOIN findings g USING (drive_id)")
+    joined = check_result.sql(
+        "SELECT * FROM findings f JOIN drives d USING (drive_id) JOIN findings g USING (drive_id)"
+    )
     names = joined.arrow().column_names
     assert {"t_start_ns", "t_start_ns_1", "t_start_ns_2"} <= set(names)
     assert len(set(names)) == len(names) == joined.pl().width
-    same = checked.sql(
+    same = check_result.sql(
         "SELECT f.t_start_ns, d.t_start_ns, d.lat AS t_start_ns_1 FROM findings f JOIN drives d USING (drive_id)"
     )
     assert same.arrow().column_names == ["t_start_ns", "t_start_ns_2", "t_start_ns_1"]
@@ -321,39 +325,39 @@ def test_columns_of_one_name_are_told_apart(checked: drivelint.CheckResult) -> N
         ("SELEC 1", "SELEC"),
     ],
 )
-def test_sql_touches_nothing_else(checked: drivelint.CheckResult, query: str, says: str, tmp_path: Path) -> None:
+def test_sql_touches_nothing_else(check_result: drivelint.CheckResult, query: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text("a\n1\n", encoding="utf-8")
     with pytest.raises(drivelint.DriveLintError, match=says):
-        checked.sql(query.format(out=tmp_path))
+        check_result.sql(query.format(out=tmp_path))
     assert [f.name for f in tmp_path.iterdir()] == ["log.csv"]
 
 
-def test_what_a_query_creates_is_gone(checked: drivelint.CheckResult) -> None:
-    checked.sql("DROP VIEW findings")
-    checked.sql("CREATE TABLE mine AS SELECT 1")
-    assert len(checked.sql("FROM findings")) == len(checked.findings)
+def test_what_a_query_creates_is_gone(check_result: drivelint.CheckResult) -> None:
+    check_result.sql("DROP VIEW findings")
+    check_result.sql("CREATE TABLE mine AS SELECT 1")
+    assert len(check_result.sql("FROM findings")) == len(check_result.findings)
     with pytest.raises(drivelint.DriveLintError, match="mine"):
-        checked.sql("FROM mine")
+        check_result.sql("FROM mine")
 
 
-def test_reports_are_texts_or_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:
-    assert checked.report(to="junit").startswith("<?xml")
-    file = checked.report(tmp_path / "page.html")
+def test_reports_are_texts_or_files(check_result: drivelint.CheckResult, tmp_path: Path) -> None:
+    assert check_result.report(to="junit").startswith("<?xml")
+    file = check_result.report(tmp_path / "page.html")
     assert file == tmp_path / "page.html"
-    assert file.read_text("utf-8") == checked.report()
+    assert file.read_text("utf-8") == check_result.report()
     with pytest.raises(drivelint.DriveLintError, match="'html'"):
-        checked.report(to="htm")  # type: ignore[call-overload]
+        check_result.report(to="htm")  # type: ignore[call-overload]
 
 
-def test_a_query_that_fails_is_one_error(checked: drivelint.CheckResult) -> None:
+def test_a_query_that_fails_is_one_error(check_result: drivelint.CheckResult) -> None:
     with pytest.raises(drivelint.DriveLintError, match="the query failed: Parser Error") as raised:
-        checked.sql("selec nonsense")
+        check_result.sql("selec nonsense")
     shown = "".join(traceback.format_exception(raised.value))
     assert shown.count("Traceback") == 1, shown
 
 
 @pytest.mark.parametrize(
-    ("given", "says"),
+    ("arguments", "says"),
     [
         ({"traces": []}, "no traces"),
         ({"traces": "nowhere.mcap"}, r"nowhere\.mcap: no such file"),
@@ -390,9 +394,9 @@ def test_a_query_that_fails_is_one_error(checked: drivelint.CheckResult) -> None
         ({"baseline": "nowhere"}, "nowhere: no result"),
     ],
 )
-def test_a_mistake_is_an_error_that_can_be_caught(given: dict[str, Any], says: str, drives: Path) -> None:
+def test_a_mistake_is_an_error_that_can_be_caught(arguments: dict[str, Any], says: str, drives: Path) -> None:
     with pytest.raises(drivelint.DriveLintError, match=says):
-        drivelint.check(**{"traces": drives / "safe.mcap", **given})
+        drivelint.check(**{"traces": drives / "safe.mcap", **arguments})
 
 
 @pytest.mark.slow
@@ -507,35 +511,37 @@ def test_types_of_arrays_and_frames_are_taken(drives: Path) -> None:
         drivelint.check(drives / "safe.mcap", **asked, ego=np.int64(17))  # type: ignore[arg-type]
 
 
-def test_a_folder_and_an_empty_name_are_no_place_for_a_report(checked: drivelint.CheckResult, tmp_path: Path) -> None:
+def test_a_folder_and_an_empty_name_are_no_place_for_a_report(
+    check_result: drivelint.CheckResult, tmp_path: Path
+) -> None:
     with pytest.raises(drivelint.DriveLintError, match="is a folder: name the file"):
-        checked.report(tmp_path)
+        check_result.report(tmp_path)
     with pytest.raises(drivelint.DriveLintError, match="an empty folder name"):
-        checked.write(" ")
+        check_result.write(" ")
     with pytest.raises(drivelint.DriveLintError, match="base=5: give a result, or its folder"):
-        drivelint.diff(5, checked)  # type: ignore[arg-type]
+        drivelint.diff(5, check_result)  # type: ignore[arg-type]
 
 
-def test_columns_are_described_with_their_units(checked: drivelint.CheckResult) -> None:
-    told = {row["column"]: row for row in checked.findings.describe()}
-    assert tuple(told) == checked.findings.columns
+def test_columns_are_described_with_their_units(check_result: drivelint.CheckResult) -> None:
+    told = {row["column"]: row for row in check_result.findings.describe()}
+    assert tuple(told) == check_result.findings.columns
     assert told["t_worst_s"]["type"] == "double"
     assert all(row["meaning"] for row in told.values())
-    assert {row["meaning"] for row in checked.sql("SELECT 1 AS one").describe()} == {""}
+    assert {row["meaning"] for row in check_result.sql("SELECT 1 AS one").describe()} == {""}
 
 
-def test_sql_knows_geometry(checked: drivelint.CheckResult) -> None:
+def test_sql_knows_geometry(check_result: drivelint.CheckResult) -> None:
     """Where the findings' rows say that the ego was, and on a lane."""
-    (row,) = checked.sql("""
+    (row,) = check_result.sql("""
         SELECT max(abs(ST_X(f.geom) - f.x_m) + abs(ST_Y(f.geom) - f.y_m)) AS off_m, count(*) AS n
         FROM findings f WHERE EXISTS (FROM lanes l WHERE ST_Intersects(l.geom, f.geom))
     """)
     assert row["n"] > 0
     assert row["off_m"] == 0.0
-    assert "geom" not in checked.sql("FROM findings").columns
+    assert "geom" not in check_result.sql("FROM findings").columns
     for nothing in ("", "-- nothing"):
         with pytest.raises(drivelint.DriveLintError, match="returns nothing"):
-            checked.sql(nothing)
+            check_result.sql(nothing)
 
 
 def test_a_folder_without_a_result_is_refused(tmp_path: Path) -> None:
@@ -561,12 +567,12 @@ def test_read_trace_has_the_tables_of_a_log(drives: Path) -> None:
     assert len(mapped.actor_state)
 
 
-def test_read_trace_has_the_lanes_of_a_map(drives: Path, checked: drivelint.CheckResult) -> None:
+def test_read_trace_has_the_lanes_of_a_map(drives: Path, check_result: drivelint.CheckResult) -> None:
     """All of the road's lanes, as `check` has those near a finding, and the ego lies on them."""
     trace = drivelint.read_trace(drives / "near-miss.mcap", map=drives / "road.xodr")
     mine = {row["lanelet_id"]: row for row in trace.lanes}
-    assert mine.keys() >= set(checked.lanes["lanelet_id"])
-    assert all(mine[row["lanelet_id"]] == row for row in checked.lanes)
+    assert mine.keys() >= set(check_result.lanes["lanelet_id"])
+    assert all(mine[row["lanelet_id"]] == row for row in check_result.lanes)
     roads = shapely.union_all([
         shapely.Polygon([
             *zip(row["left_x_m"], row["left_y_m"], strict=True),

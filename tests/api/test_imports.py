@@ -7,7 +7,7 @@ import sys
 
 from tests.shared_data import ROOT
 
-CALLED = """
+SCRIPT = """
 import sys, drivelint
 try:
     drivelint.check("no-such-log.mcap", env={"weather": "dry"}, map_offset=(1, 2))
@@ -21,6 +21,6 @@ assert "typer" not in sys.modules, "Typer is imported"
 def test_python_needs_no_typer() -> None:
     source = str(ROOT / "src")
     done = subprocess.run(
-        [sys.executable, "-c", CALLED], capture_output=True, text=True, env={"PYTHONPATH": source}, check=False
+        [sys.executable, "-c", SCRIPT], capture_output=True, text=True, env={"PYTHONPATH": source}, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")

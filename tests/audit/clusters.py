@@ -59,11 +59,11 @@ def dask(home: Path, n_workers: int, port: int = 0, hosts: Hosts | None = None) 
     try:
         host = "127.0.0.1" if hosts is None else hosts.address(0)
         start(["scheduler", "--host", host, "--port", str(port), "--no-dashboard"], "scheduler")
-        address = _told(home / "scheduler.log", r"Scheduler at:\s+(tcp://\S+)")
+        address = _wait_for_text(home / "scheduler.log", r"Scheduler at:\s+(tcp://\S+)")
         words = ["worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--memory-limit", "0"]
         temporary = [start(words, f"worker{n}") for n in range(n_workers)]
         for n in range(n_workers):
-            _told(home / f"worker{n}.log", r"(Registered to)")
+            _wait_for_text(home / f"worker{n}.log", r"(Registered to)")
         yield DaskProcesses(address, running[0], running[1:], temporary)
     finally:
         for each in running:
@@ -72,7 +72,7 @@ def dask(home: Path, n_workers: int, port: int = 0, hosts: Hosts | None = None) 
             each.wait()
 
 
-def _told(log: Path, pattern: str) -> str:
+def _wait_for_text(log: Path, pattern: str) -> str:
     """Wait until a log says something, and return it."""
     for _ in range(600):
         if found := re.search(pattern, log.read_text(encoding="utf-8", errors="replace")):

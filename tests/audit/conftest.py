@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 
 
 @pytest.fixture(scope="module")
@@ -17,4 +17,4 @@ def drives(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
 @pytest.fixture(scope="module")
 def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
     """Return the digest of the fleet's audit in one process."""
-    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
+    return run_audit(drives, tmp_path_factory.mktemp("local") / "out").digest

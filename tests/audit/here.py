@@ -26,7 +26,7 @@ class InThisProcess:
     poison: str = "nothing"
     capacity: int = 2
     tasks: list[Task] = field(default_factory=list)
-    lost: list[int] = field(default_factory=list)
+    lost_sizes: list[int] = field(default_factory=list)
 
     def submit(self, task: Task) -> None:
         self.tasks.append(task)
@@ -34,7 +34,7 @@ class InThisProcess:
     def wait(self) -> list[TaskOutcome]:
         task = self.tasks.pop(0)
         if any(self.poison in drive.log for drive in task.drives):
-            self.lost.append(len(task.drives))
+            self.lost_sizes.append(len(task.drives))
             return [TaskOutcome(task, loss_reason="the worker died")]
         return [TaskOutcome(task, run_task(task))]
 
@@ -51,7 +51,7 @@ class Stopped(InThisProcess):
         return super().wait()
 
 
-def judged(
+def run_audit(
     drives: fleet.Fleet,
     out: Path | str,
     executor: InThisProcess | None = None,

@@ -30,7 +30,7 @@ from drivelint.report import junit
 from drivelint.report.progress import Silent
 from drivelint.result.model import exit_status
 from tests.audit import fleet
-from tests.audit.here import SETTINGS, InThisProcess, judged
+from tests.audit.here import SETTINGS, InThisProcess, run_audit
 from tests.audit.kills import audit_with_kills
 
 if TYPE_CHECKING:
@@ -44,10 +44,10 @@ N_DRIVES = 12
 @pytest.fixture(scope="module")
 def undisturbed(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, AuditSummary]:
     out = tmp_path_factory.mktemp("undisturbed") / "audit"
-    return out, judged(drives, out)
+    return out, run_audit(drives, out)
 
 
-def asked(out: Path, query: str) -> list[dict[str, object]]:
+def query_rows(out: Path, query: str) -> list[dict[str, object]]:
     found: list[dict[str, object]] = json.loads(run_query(str(out), query, "json"))
     return found
 
@@ -56,7 +56,7 @@ def test_the_planted_contacts_and_only_they_are_found(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary]
 ) -> None:
     out, counted = undisturbed
-    found = asked(out, "SELECT DISTINCT d.file_name AS name FROM findings f JOIN drives d USING (key)")
+    found = query_rows(out, "SELECT DISTINCT d.file_name AS name FROM findings f JOIN drives d USING (key)")
     assert {row["name"] for row in found} == drives.planted
     assert (counted.n_drives, counted.n_judged, counted.reused) == (N_DRIVES, N_DRIVES, 0)
     assert counted.failed == {"critical": len(drives.planted)}
@@ -92,20 +92,22 @@ def test_copies_are_judged_where_asked(tmp_path: Path) -> None:
     asking = replace(SETTINGS, robustness=True)
     request = AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out"), settings=asking)
     audit(request, Silent(), InThisProcess())
-    rows = asked(tmp_path / "out", "SELECT drive_id, n_copies, n_stays FROM findings")
+    rows = query_rows(tmp_path / "out", "SELECT drive_id, n_copies, n_stays FROM findings")
     assert {row["drive_id"]: (row["n_copies"], row["n_stays"]) for row in rows} == told
     assert all(n_copies for n_copies, _ in told.values())
 
 
 def test_tags_of_the_manifest_are_in_the_table_of_drives(undisturbed: tuple[Path, AuditSummary]) -> None:
-    found = asked(undisturbed[0], "SELECT tags['release'] AS r, count(*) AS n FROM drives GROUP BY ALL ORDER BY ALL")
+    found = query_rows(
+        undisturbed[0], "SELECT tags['release'] AS r, count(*) AS n FROM drives GROUP BY ALL ORDER BY ALL"
+    )
     assert found == [{"r": "v0", "n": N_DRIVES // 2}, {"r": "v1", "n": N_DRIVES // 2}]
 
 
 def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary]) -> None:
     out, first = undisturbed
     executor = InThisProcess()
-    again = judged(drives, out, executor)
+    again = run_audit(drives, out, executor)
     assert (again.reused, again.digest) == (N_DRIVES, first.digest)
     assert not executor.tasks
 
@@ -113,11 +115,11 @@ def test_a_second_run_reuses_every_result(drives: fleet.Fleet, undisturbed: tupl
 @pytest.mark.slow
 def test_a_log_that_changed_is_judged_again(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
-    judged(few, tmp_path / "out")
+    run_audit(few, tmp_path / "out")
     log = next((tmp_path / "fleet" / "logs").iterdir())
     rows = pq.read_table(log)
     pq.write_table(rows.slice(0, rows.num_rows - 1), log)
-    again = judged(few, tmp_path / "out")
+    again = run_audit(few, tmp_path / "out")
     assert (again.reused, again.n_drives) == (3, 4)
 
 
@@ -145,7 +147,7 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
         release(memory)
 
     monkeypatch.setattr(MemoryLimit, "release_unused_memory", noted)
-    assert judged(drives, tmp_path / "out", InThisProcess()).digest == undisturbed[1].digest
+    assert run_audit(drives, tmp_path / "out", InThisProcess()).digest == undisturbed[1].digest
     assert len(released) > 1
 
 
@@ -153,7 +155,7 @@ def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
 def test_shards_give_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path
 ) -> None:
-    parts = [judged(drives, tmp_path / "out", shard=(n, 3)) for n in (1, 2, 3)]
+    parts = [run_audit(drives, tmp_path / "out", shard=(n, 3)) for n in (1, 2, 3)]
     assert sum(part.n_drives for part in parts) == N_DRIVES
     assert all(0 < part.n_drives < N_DRIVES for part in parts)
     assert {part.digest for part in parts} == {None}
@@ -194,7 +196,7 @@ def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
         return create(results, name, content)
 
     monkeypatch.setattr(LocalFolder, "create", create_after_another_began)
-    counted = judged(drives, tmp_path / "out")
+    counted = run_audit(drives, tmp_path / "out")
     assert len(batches) == len(worker.TABLES)
     assert (counted.n_drives, counted.digest) == (N_DRIVES, undisturbed[1].digest)
 
@@ -213,11 +215,11 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     drives: fleet.Fleet, tmp_path: Path
 ) -> None:
     executor = InThisProcess(poison="drive-00003")
-    counted = judged(drives, tmp_path / "out", executor)
+    counted = run_audit(drives, tmp_path / "out", executor)
     assert (counted.n_judged, counted.quarantined) == (N_DRIVES - 1, 1)
-    assert len(executor.lost) == MOST_ATTEMPTS_PER_DRIVE
-    assert executor.lost[1:] == [1] * (MOST_ATTEMPTS_PER_DRIVE - 1)
-    (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
+    assert len(executor.lost_sizes) == MOST_ATTEMPTS_PER_DRIVE
+    assert executor.lost_sizes[1:] == [1] * (MOST_ATTEMPTS_PER_DRIVE - 1)
+    (row,) = query_rows(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
     assert row["status"] == "not_judged"
     assert "3 workers died on this drive: the worker died" in str(row["status_reason"])
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
@@ -244,13 +246,13 @@ def test_a_bad_log_is_refused_and_tried_again_when_asked(tmp_path: Path) -> None
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"
     whole = log.read_bytes()
     log.write_bytes(whole[: len(whole) // 2])
-    first = judged(few, tmp_path / "out")
+    first = run_audit(few, tmp_path / "out")
     assert (first.n_judged, first.n_refused) == (3, 1)
-    assert judged(few, tmp_path / "out").reused == 4
-    again = judged(few, tmp_path / "out", retry_errors=True)
+    assert run_audit(few, tmp_path / "out").reused == 4
+    again = run_audit(few, tmp_path / "out", retry_errors=True)
     assert (again.n_refused, again.reused) == (1, 3)
     log.write_bytes(whole)
-    mended = judged(few, tmp_path / "out", retry_errors=True)
+    mended = run_audit(few, tmp_path / "out", retry_errors=True)
     assert (mended.n_judged, mended.n_refused, mended.n_drives) == (4, 0, 4)
 
 
@@ -259,8 +261,8 @@ def test_copies_of_another_name_are_drives_of_their_own_as_in_check(tmp_path: Pa
     few = fleet.write(tmp_path / "fleet", 3)
     logs = sorted((tmp_path / "fleet" / "logs").iterdir())
     logs[1].write_bytes(logs[0].read_bytes())
-    assert judged(few, tmp_path / "out").n_drives == 3
-    assert judged(few, tmp_path / "out").reused == 3
+    assert run_audit(few, tmp_path / "out").n_drives == 3
+    assert run_audit(few, tmp_path / "out").reused == 3
 
 
 @pytest.mark.slow
@@ -270,7 +272,7 @@ def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp
     (logs / "again").mkdir()
     (logs / "again" / "drive-00000.parquet").write_bytes((logs / "drive-00000.parquet").read_bytes())
     for n_reused in (0, 3):
-        counted = judged(few, tmp_path / "out", sources=str(logs))
+        counted = run_audit(few, tmp_path / "out", sources=str(logs))
         assert (counted.n_drives, counted.n_asked) == (3, 4)
         assert counted.reused >= n_reused
         assert "1 log with the same name, content and tags as another" in summary_text(counted, "out", ExitCode.OK)
@@ -295,7 +297,7 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
     )
     few.manifest.write_text("\n".join(["log,release", *rows]), encoding="utf-8")
     for _ in range(2):
-        counted = judged(few, tmp_path / "out")
+        counted = run_audit(few, tmp_path / "out")
         assert tags_in(tmp_path / "out") == [{"release": "a"}, {"release": "b"}]
         assert (counted.n_drives, counted.copies, counted.n_asked) == (2, 1, 3)
         assert "1 log with the same name, content and tags as another log" in summary_text(counted, "out", ExitCode.OK)
@@ -304,10 +306,10 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
-    judged(few, tmp_path / "out")
+    run_audit(few, tmp_path / "out")
     text = few.manifest.read_text(encoding="utf-8")
     few.manifest.write_text(text.replace("york", "bath"), encoding="utf-8")
-    counted = judged(few, tmp_path / "out")
+    counted = run_audit(few, tmp_path / "out")
     assert [each["site"] for each in tags_in(tmp_path / "out")] == ["leeds", "bath"]
     assert (counted.n_drives, counted.reused) == (2, 1)
 
@@ -316,37 +318,37 @@ def test_a_tag_that_has_changed_is_taken(tmp_path: Path) -> None:
 def test_a_renamed_log_is_judged_again_and_the_old_result_can_be_pruned(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     logs = tmp_path / "fleet" / "logs"
-    judged(few, tmp_path / "out", sources=str(logs))
+    run_audit(few, tmp_path / "out", sources=str(logs))
     (logs / "drive-00000.parquet").rename(logs / "renamed.parquet")
-    counted = judged(few, tmp_path / "out", sources=str(logs))
+    counted = run_audit(few, tmp_path / "out", sources=str(logs))
     assert (counted.n_drives, counted.n_asked, counted.n_absent) == (3, 2, 1)
     assert "1 result of earlier runs" in summary_text(counted, "out", ExitCode.OK)
-    pruned = judged(few, tmp_path / "out", sources=str(logs), prune=True)
+    pruned = run_audit(few, tmp_path / "out", sources=str(logs), prune=True)
     assert (pruned.n_drives, pruned.n_asked, pruned.n_absent, pruned.reused) == (2, 2, 0, 2)
 
 
 @pytest.mark.slow
 def test_merge_without_a_shard_says_which_is_missing(drives: fleet.Fleet, tmp_path: Path) -> None:
-    judged(drives, tmp_path / "out", shard=(1, 3))
-    judged(drives, tmp_path / "out", shard=(3, 3))
+    run_audit(drives, tmp_path / "out", shard=(1, 3))
+    run_audit(drives, tmp_path / "out", shard=(3, 3))
     partial = merge(str(tmp_path / "out"), Silent())
     assert partial.missing_parts == ["2-of-3"]
     assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
     assert "INCOMPLETE: these parts have not ended: 2-of-3" in summary_text(partial, "out", ExitCode.NOT_JUDGED)
-    judged(drives, tmp_path / "out", shard=(2, 3))
+    run_audit(drives, tmp_path / "out", shard=(2, 3))
     assert merge(str(tmp_path / "out"), Silent()).missing_parts == []
-    assert judged(drives, tmp_path / "out", shard=(2, 3)).reused > 0
+    assert run_audit(drives, tmp_path / "out", shard=(2, 3)).reused > 0
 
 
 @pytest.mark.slow
 def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 4)
-    assert judged(few, tmp_path / "whole").exit_code("never", strict=False) == ExitCode.OK
+    assert run_audit(few, tmp_path / "whole").exit_code("never", strict=False) == ExitCode.OK
     log = few.manifest.parent / "logs" / "drive-00001.parquet"
     states = pq.read_table(log, partitioning=None)
     beside = pc.if_else(states["is_ego"], pc.add(states["y_m"], 60.0), states["y_m"])
     pq.write_table(states.set_column(states.schema.get_field_index("y_m"), "y_m", beside), log)
-    told = judged(few, tmp_path / "out")
+    told = run_audit(few, tmp_path / "out")
     assert (told.n_judged, told.off_map) == (4, 1)
     assert told.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
     assert "4 judged, 1 with a map that does not fit" in summary_text(told, "out", ExitCode.NOT_JUDGED)
@@ -356,10 +358,10 @@ def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> No
 def test_a_shard_that_is_given_again_after_a_merge_says_what_it_said_before(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 12)
     (tmp_path / "fleet" / "logs" / "drive-00001.parquet").write_bytes(b"PAR1")
-    first = judged(few, tmp_path / "out", shard=(1, 1))
+    first = run_audit(few, tmp_path / "out", shard=(1, 1))
     assert (first.n_refused, first.failed) == (1, {"critical": len(few.planted - {"drive-00001.parquet"})})
     merge(str(tmp_path / "out"), Silent())
-    again = judged(few, tmp_path / "out", shard=(1, 1))
+    again = run_audit(few, tmp_path / "out", shard=(1, 1))
     assert (again.n_judged, again.n_refused, again.failed) == (first.n_judged, first.n_refused, first.failed)
     assert again.exit_code("critical", strict=False) == first.exit_code("critical", strict=False) == ExitCode.FAILED
 
@@ -377,7 +379,7 @@ def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: P
     for shard in (None, (1, 2)):
         out = tmp_path / f"out{shard}"
         with pytest.raises(KeyboardInterrupt):
-            judged(few, out, Stopped(), shard=shard)
+            run_audit(few, out, Stopped(), shard=shard)
         partial = merge(str(out), Silent())
         assert partial.missing_parts
         assert partial.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
@@ -388,15 +390,15 @@ def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: P
 @pytest.mark.slow
 def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="--retry-errors and --prune"):
-        judged(drives, tmp_path / "out", shard=(1, 2), retry_errors=True)
+        run_audit(drives, tmp_path / "out", shard=(1, 2), retry_errors=True)
     few = fleet.write(tmp_path / "fleet", 3)
-    judged(few, tmp_path / "few", shard=(1, 1))
+    run_audit(few, tmp_path / "few", shard=(1, 1))
     merge(str(tmp_path / "few"), Silent())
     log = tmp_path / "fleet" / "logs" / "drive-00000.parquet"
     rows = pq.read_table(log)
     pq.write_table(rows.slice(0, rows.num_rows - 1), log)
     with pytest.raises(UsageError, match="1 log changed since"):
-        judged(few, tmp_path / "few", shard=(1, 1))
+        run_audit(few, tmp_path / "few", shard=(1, 1))
 
 
 @pytest.mark.slow
@@ -405,9 +407,9 @@ def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path:
         lock_results(LocalFolder(tmp_path / "out"), shared=False),
         pytest.raises(UsageError, match="another audit is running"),
     ):
-        judged(drives, tmp_path / "out")
+        run_audit(drives, tmp_path / "out")
     with lock_results(LocalFolder(tmp_path / "out"), shared=True):
-        judged(drives, tmp_path / "out", shard=(1, 2))
+        run_audit(drives, tmp_path / "out", shard=(1, 2))
         with pytest.raises(UsageError, match="another audit is running"):
             merge(str(tmp_path / "out"), Silent())
 
@@ -417,7 +419,7 @@ def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_pat
     few = fleet.write(tmp_path / "fleet", 12)
     log = tmp_path / "fleet" / "logs" / "drive-00001.parquet"
     log.write_bytes(b"PAR1")
-    text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
+    text = summary_text(run_audit(few, tmp_path / "out"), "out", ExitCode.FAILED)
     n = len(few.planted - {log.name})
     assert n > 1
     assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; certainty: not examined" in text
@@ -447,7 +449,7 @@ def test_other_versions_are_refused_in_the_same_folder(
     for module in (identity, audit_run):
         monkeypatch.setattr(module, "versions", lambda: other)
     with pytest.raises(UsageError, match="made with other versions of duckdb: choose another --out"):
-        judged(drives, undisturbed[0])
+        run_audit(drives, undisturbed[0])
 
 
 @pytest.mark.parametrize(

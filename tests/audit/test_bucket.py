@@ -17,7 +17,7 @@ from drivelint.fleet_report import page
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.faulty import faults, s3
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,15 +54,17 @@ def _use(patch: pytest.MonkeyPatch, url: str) -> None:
 
 @pytest.fixture(scope="module")
 def digest(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> str | None:
-    return judged(drives, tmp_path_factory.mktemp("local") / "out").digest
+    return run_audit(drives, tmp_path_factory.mktemp("local") / "out").digest
 
 
 def test_logs_map_manifest_and_results_in_a_bucket_give_the_tables_of_a_folder(
     drives: fleet.Fleet, digest: str | None, server: str
 ) -> None:
-    counted = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    counted = run_audit(
+        drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr"
+    )
     assert (counted.n_judged, counted.digest) == (N_DRIVES, digest)
-    again = judged(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    again = run_audit(drives, "s3://fleet/whole", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     assert (again.reused, again.digest) == (N_DRIVES, digest)
 
 
@@ -71,7 +73,7 @@ def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet
     options, lake = {"allow_http": "true"}, "s3://fleet/lake/"
     (logs, road) = ("s3://fleet/data/logs/", "s3://fleet/data/ring.xodr")
     for n in range(2):
-        counted = judged(drives, "s3://fleet/packed", delta=lake, sources=logs, road=road)
+        counted = run_audit(drives, "s3://fleet/packed", delta=lake, sources=logs, road=road)
         former = DeltaTable("s3://fleet/lake/drives", storage_options=options)
         assert (former.version(), former.count()) == (0, N_DRIVES), f"given {n + 1} times"
     commit = bucket.Bucket(lake).read(
@@ -80,7 +82,7 @@ def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet
     assert commit is not None
     assert f'"drivelint.digest":"{counted.digest}"'.encode() in commit
     one = f"{logs}drive-00000.parquet"
-    judged(drives, "s3://fleet/packed", delta=lake, sources=one, road=road, prune=True)
+    run_audit(drives, "s3://fleet/packed", delta=lake, sources=one, road=road, prune=True)
     assert DeltaTable("s3://fleet/lake/drives", storage_options=options).to_pyarrow_table()["log"].to_pylist() == [one]
     assert former.to_pyarrow_table().num_rows == N_DRIVES, "a reader of the former version keeps it"
     with faults(server, 0.1) as (url, failed), pytest.MonkeyPatch.context() as patch:
@@ -97,7 +99,9 @@ def test_a_store_that_fails_now_and_then_gives_the_same_tables(
 ) -> None:
     with faults(server, 0.2) as (url, counted):
         _use(monkeypatch, url)
-        got = judged(drives, "s3://fleet/faulty", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+        got = run_audit(
+            drives, "s3://fleet/faulty", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr"
+        )
     _use(monkeypatch, server)
     assert all(counted.values()), counted
     assert (got.n_judged, got.digest) == (N_DRIVES, digest)
@@ -107,7 +111,7 @@ def test_a_store_that_fails_now_and_then_gives_the_same_tables(
 def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_removed(
     drives: fleet.Fleet, server: str
 ) -> None:
-    judged(drives, "s3://fleet/paged", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
+    run_audit(drives, "s3://fleet/paged", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     results = open_store("s3://fleet/paged")
     for most, due in ((None, N_DRIVES), (1, 1), (0, 0)):
         page.write_fleet_page("s3://fleet/paged", "html", (), None, most_drives=most)
@@ -122,7 +126,7 @@ def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_remove
 
 @pytest.mark.slow
 def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:
-    counted = judged(drives, "s3://fleet/prefix", sources="s3://fleet/data/logs/", road="s3://fleet/data/ring.xodr")
+    counted = run_audit(drives, "s3://fleet/prefix", sources="s3://fleet/data/logs/", road="s3://fleet/data/ring.xodr")
     assert counted.n_judged == N_DRIVES
 
 

@@ -22,7 +22,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import ExitCode
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -114,5 +114,5 @@ def test_three_audits_give_the_tables_of_one(tmp_path: Path, n_killed: int) -> N
     assert set(codes[n_killed:]) <= {ExitCode.OK, ExitCode.FAILED, ExitCode.NOT_JUDGED}
     counted = merge(str(tmp_path / "out"), Silent())
     assert counted.n_drives == N_DRIVES
-    assert counted.digest == judged(drives, tmp_path / "whole").digest
+    assert counted.digest == run_audit(drives, tmp_path / "whole").digest
     assert json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["quarantined"] == 0

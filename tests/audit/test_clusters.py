@@ -18,7 +18,7 @@ from drivelint.audit.executors.choice import open_executor
 from drivelint.errors import ExitCode, UsageError
 from tests.audit import fleet
 from tests.audit.clusters import dask
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -43,7 +43,7 @@ def test_dask_with_a_killed_worker_gives_the_same_tables(
     with dask(tmp_path, 2) as cluster:
         victim = threading.Timer(2.0, cluster.workers[0].send_signal, [signal.SIGKILL])
         victim.start()
-        counted = judged(drives, tmp_path / "out", _on(cluster.address))  # type: ignore[arg-type]
+        counted = run_audit(drives, tmp_path / "out", _on(cluster.address))  # type: ignore[arg-type]
         victim.join()
         assert cluster.workers[0].wait(timeout=10) == -signal.SIGKILL
     assert (counted.n_drives, counted.quarantined, counted.digest) == (N_DRIVES, 0, digest)
@@ -62,7 +62,7 @@ def test_a_dead_scheduler_is_exit_75_and_the_audit_goes_on_after(
     assert running.returncode == ExitCode.TEMPFAIL, said
     assert "scheduler" in said
     assert "Traceback" not in said, said
-    assert judged(drives, tmp_path / "out").digest == digest
+    assert run_audit(drives, tmp_path / "out").digest == digest
 
 
 @pytest.fixture
@@ -82,12 +82,12 @@ def _submitted(executor: Any, seconds: float) -> Any:
     return next(reversed(executor._running))
 
 
-def _until(is_so: Callable[[], bool], what: str) -> None:
+def _until(is_so: Callable[[], bool], condition: str) -> None:
     for _ in range(600):
         if is_so():
             return
         time.sleep(0.05)
-    raise AssertionError(f"for 30 s not so: {what}")
+    raise AssertionError(f"for 30 s not so: {condition}")
 
 
 def _until_status(future: Any, status: str) -> None:
@@ -151,7 +151,7 @@ def test_ray_with_a_killed_node_gives_the_same_tables(drives: fleet.Fleet, diges
         executor = _on(cluster.address)
         victim = threading.Timer(3.0, cluster.remove_node, [node], {"allow_graceful": False})
         victim.start()
-        counted = judged(drives, tmp_path / "out", executor)  # type: ignore[arg-type]
+        counted = run_audit(drives, tmp_path / "out", executor)  # type: ignore[arg-type]
         victim.join()
     finally:
         cluster.shutdown()

@@ -13,7 +13,7 @@ from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.store import LocalFolder, ResultStore
 from drivelint.errors import DriveLintError, UsageError
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 
 
 class Watched(InThisProcess):
@@ -34,7 +34,7 @@ class Watched(InThisProcess):
 @pytest.mark.slow
 def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drives = fleet.write(tmp_path / "fleet", 12)
-    whole = judged(drives, tmp_path / "whole")
+    whole = run_audit(drives, tmp_path / "whole")
     here: list[bool] = []
 
     def noted(results: ResultStore, *, while_judging: bool = False) -> int:
@@ -44,7 +44,7 @@ def test_it_packs_elsewhere_while_judging(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(audit_run, "compact", noted)
     monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
     executor = Watched(tmp_path / "out")
-    assert judged(drives, tmp_path / "out", executor).digest == whole.digest
+    assert run_audit(drives, tmp_path / "out", executor).digest == whole.digest
     assert executor.seen[-1] > 0, "there was a chunk before the end"
     assert here, "the test can fail"
     assert not any(here), f"process {os.getpid()} packed while it judged"
@@ -55,7 +55,7 @@ def test_its_errors_keep_their_type(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     drives = fleet.write(tmp_path / "fleet", 12)
     monkeypatch.setattr(audit_run, "RECEIPTS_PER_COMPACTION", 8)
     with pytest.raises(UsageError, match="not a receipt of drivelint"):
-        judged(drives, tmp_path / "out", Watched(tmp_path / "out", spoiled=True))
+        run_audit(drives, tmp_path / "out", Watched(tmp_path / "out", spoiled=True))
 
 
 @pytest.mark.ci
@@ -66,4 +66,4 @@ def test_receipts_without_rows_are_counted(tmp_path: Path, monkeypatch: pytest.M
         "drivelint.audit.compact.batch_rows_query", lambda *about: f"SELECT * FROM ({rows(*about)}) LIMIT 0"
     )
     with pytest.raises(DriveLintError, match=r"^2 receipts have 0 rows in the table drives"):
-        judged(drives, tmp_path / "out")
+        run_audit(drives, tmp_path / "out")

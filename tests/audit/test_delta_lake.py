@@ -21,7 +21,7 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Progress, Silent
 from drivelint.result.publishing import OutputError
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def finished(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> P
     """An audit of all drives but the last, which the tests copy."""
     assert drives.planted, "there are findings"
     out = tmp_path_factory.mktemp("finished") / "out"
-    judged(drives, out, sources=some(drives, out.parent, N_DRIVES - 1))
+    run_audit(drives, out, sources=some(drives, out.parent, N_DRIVES - 1))
     return out
 
 
@@ -173,7 +173,7 @@ def test_given_again_it_changes_nothing_and_a_grown_audit_adds_to_it(
     assert heard.notes == [f"{lake}: the Delta tables were up to date"]
     assert sorted((path, path.stat().st_mtime_ns) for path in lake.rglob("*")) == before
     former = {table: rows(in_delta(lake, table)) for table in TABLE_NAMES}
-    judged(drives, out, sources=some(drives, tmp_path, N_DRIVES), delta=str(lake))
+    run_audit(drives, out, sources=some(drives, tmp_path, N_DRIVES), delta=str(lake))
     assert versions(lake) == [1] * len(TABLE_NAMES), "the rules are the same: their commit has only the new digest"
     assert holds(out, lake)
     assert in_delta(lake, "receipts").num_rows == N_DRIVES
@@ -191,14 +191,14 @@ def test_what_was_pruned_or_judged_again_is_not_in_the_next_version(
     shutil.copytree(drives.manifest.parent, home)
     here = fleet.Fleet(home / drives.manifest.name, home / drives.road.name, drives.planted)
     fewer = some(here, tmp_path, N_DRIVES - 2)
-    judged(here, out, sources=fewer, prune=True, delta=str(lake))
+    run_audit(here, out, sources=fewer, prune=True, delta=str(lake))
     assert holds(out, lake)
     pruned = in_delta(lake, "receipts")
     assert pruned.num_rows == N_DRIVES - 2
     log = home / "logs" / "drive-00000.parquet"
     states = pq.read_table(log, partitioning=None)
     pq.write_table(states.slice(0, states.num_rows - 3), log)
-    judged(here, out, sources=fewer, delta=str(lake))
+    run_audit(here, out, sources=fewer, delta=str(lake))
     assert holds(out, lake)
     again = in_delta(lake, "receipts")
     assert again.num_rows == N_DRIVES - 2
@@ -213,7 +213,7 @@ def test_killed_in_the_middle_every_table_is_as_before_or_as_after(
     lake = tmp_path / "lake"
     merge(str(out), Silent(), str(lake))
     former = {table: rows(in_delta(lake, table)) for table in TABLE_NAMES}
-    judged(drives, out)
+    run_audit(drives, out)
     command = [sys.executable, "-c", _KILLED, str(out), str(lake), when]
     assert subprocess.run(command, cwd=ROOT, check=False).returncode == -signal.SIGKILL
     written = TABLE_NAMES.index("findings")
@@ -250,13 +250,13 @@ def test_of_an_unfinished_audit_nothing_is_written(drives: fleet.Fleet, tmp_path
     out, lake, heard = tmp_path / "out", tmp_path / "lake", Heard()
     for option in ({"shard": (1, 2)}, {"claim": True}):
         with pytest.raises(UsageError, match="when all parts have ended, run drivelint merge --delta"):
-            judged(drives, out, delta=str(lake), **option)
+            run_audit(drives, out, delta=str(lake), **option)
     assert not out.exists()
-    judged(drives, out, shard=(1, 2))
+    run_audit(drives, out, shard=(1, 2))
     assert merge(str(out), heard, str(lake)).missing_parts == ["2-of-2"]
     assert heard.notes == [f"{lake}: the Delta tables stay as they are: parts of the audit have not ended"]
     assert not lake.exists()
-    judged(drives, out, shard=(2, 2))
+    run_audit(drives, out, shard=(2, 2))
     merge(str(out), Silent(), str(lake))
     assert holds(out, lake)
 
@@ -265,7 +265,7 @@ def test_a_table_of_somebody_else_is_refused_before_anything_is_judged(drives: f
     lake = tmp_path / "lake"
     write_deltalake(str(lake / "drives"), pa.table({"driver": ["Ann"]}))
     with pytest.raises(UsageError, match="drives: has a Delta table that drivelint did not write"):
-        judged(drives, tmp_path / "out", delta=str(lake))
+        run_audit(drives, tmp_path / "out", delta=str(lake))
     assert not (tmp_path / "out").exists()
     assert in_delta(lake, "drives")["driver"].to_pylist() == ["Ann"]
 
@@ -289,7 +289,7 @@ def test_a_place_within_the_audit_is_refused(out: Path, within: str) -> None:
 def test_a_file_is_no_place_for_tables(drives: fleet.Fleet, tmp_path: Path) -> None:
     (tmp_path / "lake").write_text("a file", encoding="ascii")
     with pytest.raises(UsageError, match="lake: is a file: give a folder for the Delta tables"):
-        judged(drives, tmp_path / "out", delta=str(tmp_path / "lake"))
+        run_audit(drives, tmp_path / "out", delta=str(tmp_path / "lake"))
     assert not (tmp_path / "out").exists()
 
 
@@ -298,7 +298,7 @@ def test_without_deltalake_one_line_says_what_to_install(
 ) -> None:
     monkeypatch.setitem(sys.modules, "deltalake", None)
     with pytest.raises(UsageError, match=r"^--delta: deltalake is not installed: pip install 'drivelint\[delta\]'$"):
-        judged(drives, tmp_path / "out", delta=str(tmp_path / "lake"))
+        run_audit(drives, tmp_path / "out", delta=str(tmp_path / "lake"))
     assert not (tmp_path / "out").exists()
 
 

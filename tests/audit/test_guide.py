@@ -15,7 +15,7 @@ from drivelint.audit import merge
 from drivelint.guide import __file__ as guide
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 
 pytestmark = pytest.mark.ci
 
@@ -62,4 +62,4 @@ def test_the_parts_of_a_manifest_are_the_whole(
             command, env={**os.environ, **about, variable: str(n)}, capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, done.stderr
-    assert merge(about["DEST"], Silent()).digest == judged(drives, tmp_path / "whole").digest
+    assert merge(about["DEST"], Silent()).digest == run_audit(drives, tmp_path / "whole").digest

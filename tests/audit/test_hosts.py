@@ -18,7 +18,7 @@ from drivelint.audit.unpacked import create_views_of_all_results
 from drivelint.errors import ExitCode
 from tests.audit import fleet
 from tests.audit.clusters import dask
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.audit.hosts import Hosts, hosts
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def test_a_host_that_is_cut_off_and_comes_back(
         cluster.workers[0].wait(timeout=60)
     assert _receipts(out)
     assert _digest_of_all(out) == digest
-    again = judged(drives, out)
+    again = run_audit(drives, out)
     assert (again.n_drives, again.reused, again.digest) == (N_DRIVES, N_DRIVES, digest)
 
 

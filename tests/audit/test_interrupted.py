@@ -21,7 +21,7 @@ from drivelint.fleet_report.audit_views import open_audits, open_two_audits
 from drivelint.fleet_report.difference import difference
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import Stopped, judged
+from tests.audit.here import Stopped, run_audit
 
 pytestmark = pytest.mark.ci
 
@@ -34,7 +34,7 @@ def interrupted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
     home = tmp_path_factory.mktemp("interrupted")
     drives = fleet.write(home / "fleet", N_DRIVES)
     with pytest.raises(KeyboardInterrupt):
-        judged(drives, home / "out", Stopped())
+        run_audit(drives, home / "out", Stopped())
     n = sum(1 for _ in (home / "out").glob("receipts/*/*.json"))
     assert 0 < n < N_DRIVES
     return home / "out", n

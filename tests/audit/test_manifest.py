@@ -19,11 +19,11 @@ from drivelint.guide import __file__ as guide
 from drivelint.result import request
 from drivelint.result.load import load_result
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 from tests.fleet_report.command import ran
 
 
-def written(home: Path, *lines: str) -> str:
+def manifest_file(home: Path, *lines: str) -> str:
     (home / "logs").mkdir(exist_ok=True)
     (home / "logs" / "a").mkdir(exist_ok=True)
     (home / "logs" / "a.mcap").touch()
@@ -40,7 +40,7 @@ def test_the_example_of_the_guide_and_of_the_help_holds() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "message"),
     [
         ("c.mcap,weather=rain,", r"row 2 \(c.mcap\): environment 'weather=rain': 'rain' is no weather"),
         ("c.mcap,weather,", r"row 2 \(c.mcap\): environment 'weather': write KEY=VALUE"),
@@ -48,9 +48,9 @@ def test_the_example_of_the_guide_and_of_the_help_holds() -> None:
         ("c.mcap,weather=dry,", r"row 2 \(c.mcap\): environment 'weather=dry': weather is 'wet' already"),
     ],
 )
-def test_a_value_that_is_none_is_told_with_its_row(tmp_path: Path, line: str, said: str) -> None:
-    source = written(tmp_path, "log,environment,handedness", "b.mcap,,lht", line)
-    with pytest.raises(UsageError, match=said) as told:
+def test_a_value_that_is_none_is_told_with_its_row(tmp_path: Path, line: str, message: str) -> None:
+    source = manifest_file(tmp_path, "log,environment,handedness", "b.mcap,,lht", line)
+    with pytest.raises(UsageError, match=message) as told:
         list(drives([source], DriveInput(env=("weather=wet",))))
     assert "\n" not in str(told.value)
 
@@ -62,22 +62,22 @@ def test_nothing_is_judged_by_such_a_manifest(tmp_path: Path) -> None:
     few.manifest.write_text("\n".join(text) + "\n", encoding="utf-8")
     executor = InThisProcess()
     with pytest.raises(UsageError, match="row 1"):
-        judged(few, tmp_path / "out", executor)
+        run_audit(few, tmp_path / "out", executor)
     with pytest.raises(UsageError, match="'rain' is no weather"):
-        judged(fleet.write(tmp_path / "other", 1), tmp_path / "out2", executor, env=("weather=rain",))
+        run_audit(fleet.write(tmp_path / "other", 1), tmp_path / "out2", executor, env=("weather=rain",))
     assert not executor.tasks
     assert not list((tmp_path / "out").rglob("receipts/*"))
 
 
 @pytest.mark.parametrize("log", ["logs/a.mcap", "logs/a", "s3://fleet/a.mcap"])
 def test_a_manifest_without_a_column_log_is_no_drive(tmp_path: Path, log: str) -> None:
-    source = written(tmp_path, "path,release", f"{log},r1")
+    source = manifest_file(tmp_path, "path,release", f"{log},r1")
     with pytest.raises(UsageError, match="a manifest needs a column log: its column 'path' names logs"):
         list(drives([source], DriveInput()))
 
 
 @pytest.mark.parametrize(
-    ("columns", "row", "said"),
+    ("columns", "row", "message"),
     [
         ("map,ego,release", "road.xodr,1,r1", "its columns are map, ego, release$"),
         ("file,release", "nowhere/a.mcap,r1", "its columns are file, release$"),
@@ -86,9 +86,9 @@ def test_a_manifest_without_a_column_log_is_no_drive(tmp_path: Path, log: str) -
         ("ego,environment", "", "its columns are ego, environment$"),
     ],
 )
-def test_a_manifest_is_told_which_column_it_lacks(tmp_path: Path, columns: str, row: str, said: str) -> None:
-    source = written(tmp_path, columns, row)
-    with pytest.raises(UsageError, match=f"^{re.escape(source)}: a manifest needs a column log: {said}"):
+def test_a_manifest_is_told_which_column_it_lacks(tmp_path: Path, columns: str, row: str, message: str) -> None:
+    source = manifest_file(tmp_path, columns, row)
+    with pytest.raises(UsageError, match=f"^{re.escape(source)}: a manifest needs a column log: {message}"):
         list(drives([source], DriveInput()))
 
 
@@ -100,7 +100,7 @@ def test_a_manifest_in_parquet_is_told_which_column_it_lacks(tmp_path: Path) -> 
 
 def test_a_table_with_lines_before_its_header_is_a_drive(tmp_path: Path) -> None:
     """As esmini writes them."""
-    source = written(
+    source = manifest_file(
         tmp_path, "esmini GIT REV: N/A", "Scenario File Name: cut-in.xosc", "t [s], x, y, name", "0.0, 1.0, 2.0, car"
     )
     assert [each.log for each in drives([source], DriveInput())] == [source]
@@ -108,13 +108,13 @@ def test_a_table_with_lines_before_its_header_is_a_drive(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("empty", ["time,x", ""])
 def test_a_table_without_rows_is_left_to_its_reader(tmp_path: Path, empty: str) -> None:
-    source = written(tmp_path, empty)
+    source = manifest_file(tmp_path, empty)
     assert [each.log for each in drives([source], DriveInput())] == [source]
 
 
 def test_a_table_of_states_is_a_drive(tmp_path: Path) -> None:
     """Also one that names the recording it was made from, which is not there."""
-    source = written(tmp_path, "time,actor,x,made_of", "0.0,1,2.0,run/7.mcap")
+    source = manifest_file(tmp_path, "time,actor,x,made_of", "0.0,1,2.0,run/7.mcap")
     assert [each.log for each in drives([source], DriveInput())] == [source]
 
 
@@ -176,16 +176,16 @@ def test_a_table_of_states_with_a_column_log_is_a_log(two: fleet.Fleet, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("columns", "told"),
+    ("columns", "warnings"),
     [
         (["mpa", "site"], ["the manifest's column mpa is only a tag: did you mean map?"]),
         (["Handednes"], ["the manifest's column Handednes is only a tag: did you mean handedness?"]),
         (["lap", "release"], []),
     ],
 )
-def test_a_misspelt_column_is_told_once(columns: list[str], told: list[str], tmp_path: Path) -> None:
-    assert list(tag_warnings(columns)) == told
+def test_a_misspelt_column_is_told_once(columns: list[str], warnings: list[str], tmp_path: Path) -> None:
+    assert list(tag_warnings(columns)) == warnings
     rows = [",".join(["logs/a.mcap", *("x" for _ in columns)])] * 2
     notes: list[str] = []
-    expand_manifests([written(tmp_path, ",".join(["log", *columns]), *rows)], DriveInput(), notes.append)
-    assert notes == told
+    expand_manifests([manifest_file(tmp_path, ",".join(["log", *columns]), *rows)], DriveInput(), notes.append)
+    assert notes == warnings

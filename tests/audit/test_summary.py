@@ -27,7 +27,7 @@ from drivelint.fleet_report.audit_views import open_audits
 from drivelint.fleet_report.content import fleet_content
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,7 @@ def once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
     home = tmp_path_factory.mktemp("audited")
     few = fleet.write(home / "fleet", 7)
     assert len(few.planted) > 1
-    judged(few, home / "out")
+    run_audit(few, home / "out")
     return home / "out", len(few.planted)
 
 
@@ -47,14 +47,14 @@ def audited(once: tuple[Path, int], tmp_path: Path) -> tuple[Path, int]:
     return tmp_path / "out", once[1]
 
 
-def told(out: Path, *, robust: bool = True) -> tuple[str, AuditSummary]:
+def findings_line_and_summary(out: Path, *, robust: bool = True) -> tuple[str, AuditSummary]:
     with open_database() as con:
         create_views(con, LocalFolder(out), out)
-        counted = replace(summary_of_all_drives(con, 0), robust=robust)
+        audit_summary = replace(summary_of_all_drives(con, 0), robust=robust)
     (line,) = [
-        line for line in summary_text(counted, "out", ExitCode.FAILED).splitlines() if line.startswith("findings")
+        line for line in summary_text(audit_summary, "out", ExitCode.FAILED).splitlines() if line.startswith("findings")
     ]
-    return line, counted
+    return line, audit_summary
 
 
 def change(out: Path, **columns: object) -> pa.Table:
@@ -71,7 +71,7 @@ def change(out: Path, **columns: object) -> pa.Table:
 def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Path, int]) -> None:
     out, n = audited
     change(out, n_stays=30)
-    line, _ = told(out)
+    line, _ = findings_line_and_summary(out)
     assert line == (
         f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n - 1} drive{'s' * (n > 2)}; possible contact in 1 drive; "
         "certainty: examined: 1 only possible"
@@ -80,7 +80,7 @@ def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Pa
 
 def test_where_nobody_looked_the_line_says_how_to(audited: tuple[Path, int]) -> None:
     out, n = audited
-    line, _ = told(out, robust=False)
+    line, _ = findings_line_and_summary(out, robust=False)
     assert line.endswith(f"CONTACT in {n} drives; certainty: not examined (--robustness examines it)")
 
 
@@ -93,7 +93,7 @@ def test_a_touch_of_two_egos_is_one(audited: tuple[Path, int]) -> None:
     later = other | {"t_start_ns": first["t_end_ns"] + 1, "t_end_ns": first["t_end_ns"] + 2, "finding_id": "later"}
     for added, expected in (([other], n), ([other, later], n + 1)):
         pq.write_table(pa.concat_tables([table, pa.Table.from_pylist(added, schema=table.schema)]), file)
-        assert told(out)[1].findings == {"critical": expected}
+        assert findings_line_and_summary(out)[1].findings == {"critical": expected}
 
 
 def test_the_surest_finding_of_a_touch_counts(audited: tuple[Path, int]) -> None:
@@ -104,8 +104,13 @@ def test_the_surest_finding_of_a_touch_counts(audited: tuple[Path, int]) -> None
     first = table.slice(0, 1).to_pylist()[0]
     other = first | {"ego_id": first["object_id"], "object_id": first["ego_id"], "finding_id": "other", "n_stays": 99}
     pq.write_table(pa.concat_tables([table, pa.Table.from_pylist([other], schema=table.schema)]), file)
-    counted = told(out)[1]
-    assert (counted.findings, counted.possible, counted.contacts, counted.contacts_possible) == (
+    audit_summary = findings_line_and_summary(out)[1]
+    assert (
+        audit_summary.findings,
+        audit_summary.possible,
+        audit_summary.contacts,
+        audit_summary.contacts_possible,
+    ) == (
         {"critical": n},
         0,
         n,
@@ -118,7 +123,7 @@ def test_one_reason_of_many_drives_is_told_once_with_its_number(tmp_path: Path) 
     text = few.manifest.read_text(encoding="utf-8").splitlines()
     text = [f"{text[0]},map", *(f"{line},nowhere.xodr" for line in text[1:])]
     few.manifest.write_text("\n".join(text) + "\n", encoding="utf-8")
-    lines = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.NOT_JUDGED).splitlines()
+    lines = summary_text(run_audit(few, tmp_path / "out"), "out", ExitCode.NOT_JUDGED).splitlines()
     assert sum("nowhere.xodr" in line for line in lines) == 1
     assert any(line.startswith("  refused (4 drives, such as ") for line in lines)
 
@@ -126,22 +131,22 @@ def test_one_reason_of_many_drives_is_told_once_with_its_number(tmp_path: Path) 
 def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
     broken = [{"severity": "major", "rule_id": "a.rule", "n_findings": 2, "n_drives": 1}]
     reasons = [{"reason_code": "missing_step", "n": 3, "n_rules": 1, "n_drives": 2, "reason": "not recorded"}]
-    counted = AuditSummary(
+    audit_summary = AuditSummary(
         n_drives=5, digest="0", broken=broken, unknown_for=reasons, unknown=9, n_broken=3, n_unknown_for=2
     )
-    lines = summary_text(counted, "out", ExitCode.OK).splitlines()
+    lines = summary_text(audit_summary, "out", ExitCode.OK).splitlines()
     at = lines.index("  major    a.rule: 2 findings in 1 drive")
     assert lines[at + 1].startswith('  and 2 more rules: drivelint sql out "SELECT ')
     at = lines.index("  3 of 1 rule in 2 drives: not recorded")
     assert lines[at + 1].startswith('  and 1 more reason: drivelint sql out "SELECT ')
     assert "missing_step" not in "\n".join(lines)
-    all_told = summary_text(replace(counted, n_broken=1, n_unknown_for=1), "out", ExitCode.OK)
+    all_told = summary_text(replace(audit_summary, n_broken=1, n_unknown_for=1), "out", ExitCode.OK)
     assert "more rule" not in all_told
     assert "more reason" not in all_told
 
 
 @pytest.mark.parametrize(
-    ("counted", "fail_on", "why"),
+    ("audit_summary", "fail_on", "why"),
     [
         (
             AuditSummary(
@@ -172,15 +177,15 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
         ),
     ],
 )
-def test_the_exit_line_gives_the_reason(counted: AuditSummary, fail_on: str, why: str) -> None:
-    text = summary_text(counted, "out", counted.exit_code(fail_on, strict=False), fail_on=fail_on)
+def test_the_exit_line_gives_the_reason(audit_summary: AuditSummary, fail_on: str, why: str) -> None:
+    text = summary_text(audit_summary, "out", audit_summary.exit_code(fail_on, strict=False), fail_on=fail_on)
     assert why in text.splitlines()
 
 
 def test_where_nothing_was_judged_there_is_nothing_to_look_at() -> None:
     lost = AuditSummary(n_drives=2, n_refused=2, digest="0")
-    for counted, is_shown in ((lost, False), (replace(lost, n_judged=1, n_refused=1), True)):
-        lines = summary_text(counted, "out", ExitCode.NOT_JUDGED, fail_on="critical").splitlines()
+    for audit_summary, is_shown in ((lost, False), (replace(lost, n_judged=1, n_refused=1), True)):
+        lines = summary_text(audit_summary, "out", ExitCode.NOT_JUDGED, fail_on="critical").splitlines()
         assert any(line.startswith(("look ", "ask ", "explain ")) for line in lines) == is_shown
 
 
@@ -188,9 +193,13 @@ def test_where_nothing_was_judged_there_is_nothing_to_look_at() -> None:
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "MOST_LISTED_RULES", 0)
     few = fleet.write(tmp_path / "fleet", 12)
-    counted = judged(few, tmp_path / "out")
-    assert (counted.broken, counted.n_broken, counted.n_unknown_for) == ([], 1, len(counted.unknown_for))
-    assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(counted, "out", ExitCode.FAILED)
+    audit_summary = run_audit(few, tmp_path / "out")
+    assert (audit_summary.broken, audit_summary.n_broken, audit_summary.n_unknown_for) == (
+        [],
+        1,
+        len(audit_summary.unknown_for),
+    )
+    assert '  and 1 more rule: drivelint sql out "SELECT ' in summary_text(audit_summary, "out", ExitCode.FAILED)
 
 
 @pytest.mark.slow
@@ -202,16 +211,16 @@ def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: st
     copy = few.manifest.parent / "logs" / "copy.parquet"
     copy.write_bytes((copy.parent / "drive-00000.parquet").read_bytes())
     few.manifest.write_text(f"log,ego\nlogs/drive-00000.parquet,0\nlogs/copy.parquet,{ego}\n", encoding="utf-8")
-    counted = judged(few, tmp_path / "out")
+    audit_summary = run_audit(few, tmp_path / "out")
     with open_audits(str(tmp_path / "out")) as (con, out, _):
         page = fleet_content(con, out, None, ())
         ways = {
             row[0]: row[1]
             for row in con.sql("SELECT e.ego_id, e.km FROM (SELECT unnest(exposure) AS e FROM drives)").fetchall()
         }
-    assert (counted.n_drives, counted.copies, page.totals["egos"]) == (2, 1, len({"0", ego}))
-    assert counted.km == page.totals["km"] == pytest.approx(sum(ways[name] for name in {"0", ego}), abs=1e-9)
-    assert counted.hours == pytest.approx(fleet.SECONDS / 3600, abs=1e-4)
+    assert (audit_summary.n_drives, audit_summary.copies, page.totals["egos"]) == (2, 1, len({"0", ego}))
+    assert audit_summary.km == page.totals["km"] == pytest.approx(sum(ways[name] for name in {"0", ego}), abs=1e-9)
+    assert audit_summary.hours == pytest.approx(fleet.SECONDS / 3600, abs=1e-4)
 
 
 def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
@@ -219,8 +228,8 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
         {"log": "a.csv", "status": "refused", "reason": "map nowhere.xodr does not exist", "n": 1},
         {"log": "b.csv", "status": "refused", "reason": "b.csv: the file is empty", "n": 1},
     ]
-    counted = AuditSummary(n_drives=5, n_refused=5, digest="0", not_judged=rows)
-    lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
+    audit_summary = AuditSummary(n_drives=5, n_refused=5, digest="0", not_judged=rows)
+    lines = summary_text(audit_summary, "out", ExitCode.NOT_JUDGED).splitlines()
     assert "  refused (a.csv): map nowhere.xodr does not exist" in lines
     assert "  refused: b.csv: the file is empty" in lines
     assert any(line.startswith("  and 3 more: drivelint sql out ") for line in lines)
@@ -229,11 +238,11 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
 @pytest.mark.slow
 @pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
-    ("tag", "told"),
+    ("tag", "warning"),
     [("weather", "column weather is only a tag"), ("Handednes", "did you mean handedness?"), ("lap", None)],
 )
 def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_none(
-    tag: str, told: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tag: str, warning: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = fleet.write(tmp_path / "fleet", 1)
     header, row, *_ = few.manifest.read_text(encoding="utf-8").splitlines()
@@ -245,8 +254,8 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
         AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out")), listener, InThisProcess()
     )
     said = [note for note in notes if "only a tag" in note]
-    assert len(said) == (told is not None)
-    assert all(str(told) in note for note in said)
+    assert len(said) == (warning is not None)
+    assert all(str(warning) in note for note in said)
 
 
 @pytest.mark.slow
@@ -257,8 +266,8 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     copies = [log for log in logs if log.name not in few.planted][:2]
     for copy in copies:
         copy.write_bytes(first.read_bytes())
-    counted = judged(few, tmp_path / "out")
-    lines = summary_text(counted, "out", ExitCode.FAILED).splitlines()
+    audit_summary = run_audit(few, tmp_path / "out")
+    lines = summary_text(audit_summary, "out", ExitCode.FAILED).splitlines()
     assert lines[0].startswith("10 drives of ")
     assert lines[1] == "10 judged"
     assert lines[2] == "2 more logs have the same content as another log: logs with the same content count once"
@@ -267,10 +276,10 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     assert {Path(name).name for pair in told_copies for name in pair} == {log.name for log in (first, *copies)}
     for copy in copies:
         copy.unlink()
-    alone = judged(few, tmp_path / "alone", sources=str(tmp_path / "fleet" / "logs"))
+    alone = run_audit(few, tmp_path / "alone", sources=str(tmp_path / "fleet" / "logs"))
     for name in ("km", "hours", "findings", "contacts", "unknown", "broken", "unknown_for"):
-        assert getattr(counted, name) == getattr(alone, name), name
-    assert counted.findings == {"critical": len(few.planted)}
+        assert getattr(audit_summary, name) == getattr(alone, name), name
+    assert audit_summary.findings == {"critical": len(few.planted)}
     with open_audits(str(tmp_path / "out")) as (con, out, _):
         page = fleet_content(con, out, None, ())
     assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
@@ -283,8 +292,8 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
     damaged = sorted((tmp_path / "fleet" / "logs").iterdir())[:2]
     for log in damaged:
         log.write_bytes(b"PAR1")
-    counted = judged(few, tmp_path / "out")
-    lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
+    audit_summary = run_audit(few, tmp_path / "out")
+    lines = summary_text(audit_summary, "out", ExitCode.NOT_JUDGED).splitlines()
     assert lines[0].startswith("3 drives of ")
     assert lines[1] == "2 judged, 1 refused"
     assert lines[2] == "1 more log has the same content as another log: logs with the same content count once"
@@ -308,7 +317,7 @@ def test_a_log_that_is_listed_twice_says_what_differs(tmp_path: Path, column: st
     rows = ["logs/drive-00000.parquet,south,0", "logs/drive-00000.parquet,south,0"]
     rows[1] = rows[1].replace("south" if column == "site" else ",0", value if column == "site" else f",{value}")
     few.manifest.write_text("\n".join(["log,site,ego", *rows, ""]), encoding="utf-8")
-    text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.OK)
+    text = summary_text(run_audit(few, tmp_path / "out"), "out", ExitCode.OK)
     assert f"drive-00000.parquet: {words}" in text
 
 
@@ -346,8 +355,8 @@ def test_the_query_that_is_proposed_gives_the_numbers_that_are_printed(audited: 
     first = table.slice(0, 1).to_pylist()[0]
     other = first | {"ego_id": first["object_id"], "object_id": first["ego_id"], "finding_id": "other"}
     pq.write_table(pa.concat_tables([table, pa.Table.from_pylist([other], schema=table.schema)]), file)
-    _, counted = told(out)
-    text = summary_text(replace(counted, n_broken=len(counted.broken) + 1), str(out), ExitCode.FAILED)
+    _, audit_summary = findings_line_and_summary(out)
+    text = summary_text(replace(audit_summary, n_broken=len(audit_summary.broken) + 1), str(out), ExitCode.FAILED)
     proposed = [re.search(r'"(SELECT .*)"', line) for line in text.splitlines() if " rule_id, count(" in line]
     assert len(proposed) == 2
     for found in proposed:
@@ -361,6 +370,6 @@ def test_an_audit_that_decided_nothing_is_no_pass(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 2)
     settings = JudgeSettings(rules=("ukhc.r113.headlights",), memory=200_000_000)
     request = AuditRequest(sources=(str(few.manifest),), out=str(tmp_path / "out"), map=few.road, settings=settings)
-    counted = audit(request, Silent(), InThisProcess())
-    assert counted.undecided is not None
-    assert counted.exit_code("critical", strict=False) == ExitCode.NOT_JUDGED
+    audit_summary = audit(request, Silent(), InThisProcess())
+    assert audit_summary.undecided is not None
+    assert audit_summary.exit_code("critical", strict=False) == ExitCode.NOT_JUDGED

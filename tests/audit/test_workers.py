@@ -19,7 +19,7 @@ from drivelint.errors import ExitCode
 from drivelint.report.progress import Silent
 from drivelint.result.publishing import OutputError
 from tests.audit import fleet
-from tests.audit.here import SETTINGS, judged
+from tests.audit.here import SETTINGS, run_audit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 @pytest.mark.slow
 def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_without_it(tmp_path: Path) -> None:
     drives = fleet.write(tmp_path / "fleet", 5)
-    undisturbed = judged(drives, tmp_path / "before")
+    undisturbed = run_audit(drives, tmp_path / "before")
     log = tmp_path / "fleet" / "logs" / "drive-00005.parquet"
     fleet.write_exhausting(log, log.with_name("drive-00004.parquet"))
     counted = audit(
@@ -46,7 +46,7 @@ def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_w
     )
     assert (counted.n_judged, counted.quarantined) == (5, 1)
     assert "MB of memory, but the limit is 600 MB" in counted.not_judged[0]["reason"]
-    alone = judged(drives, tmp_path / "out", prune=True)
+    alone = run_audit(drives, tmp_path / "out", prune=True)
     assert (alone.reused, alone.digest) == (5, undisturbed.digest)
 
 

@@ -75,10 +75,10 @@ def ego_drive(name: str, km: float = 100.0, hours: float = 2.0, **over: Any) -> 
     return drive(name, **({"sha256": name, "exposure": [way], "tags": {"release": "a"}} | over))
 
 
-def said(drive_id: str, word: str, **over: Any) -> dict[str, Any]:
+def drive_verdict(drive_id: str, word: str, **over: Any) -> dict[str, Any]:
     return verdict(word, **({"drive_id": drive_id, "profile": None} | over))
 
 
-def found(drive_id: str, **over: Any) -> dict[str, Any]:
+def drive_finding(drive_id: str, **over: Any) -> dict[str, Any]:
     times = dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), 0)
     return finding(**({"drive_id": drive_id, "profile": None, "finding_id": drive_id} | times | over))

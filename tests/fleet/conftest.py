@@ -11,13 +11,13 @@ from tests.fleet_report.command import ran
 from tests.shared_data import ROOT
 
 OVERTAKE = ROOT / "fixtures" / "overtake"
-Checked = Callable[..., Path]
+RunCheck = Callable[..., Path]
 
 
 @pytest.fixture(scope="session")
-def checked(tmp_path_factory: pytest.TempPathFactory) -> Checked:
+def run_check(tmp_path_factory: pytest.TempPathFactory) -> RunCheck:
     """Return a function that judges the three overtakes, or other logs, with further options and returns the result's folder."""
-    made: dict[tuple[str, ...], Path] = {}
+    folders: dict[tuple[str, ...], Path] = {}
 
     def check(
         *options: str, logs: tuple[str, ...] = ("safe", "near_miss", "collision"), folder: Path = OVERTAKE
@@ -31,11 +31,11 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Checked:
         ]
         command += ["--mapping", str(OVERTAKE / "mapping.toml"), "--quiet", "--fail-on", "never"]
         command += ["--no-annotate", "--no-robustness"]  # a fleet's rates count neither
-        if (key := tuple(command)) not in made:
+        if (key := tuple(command)) not in folders:
             out = tmp_path_factory.mktemp("audit") / "results"
             done = ran(*command, "--out", out)
             assert done.code in {0, 4}, done.err  # 4: rules of which nothing can be decided
-            made[key] = out
-        return made[key]
+            folders[key] = out
+        return folders[key]
 
     return check

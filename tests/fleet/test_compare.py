@@ -20,20 +20,20 @@ from drivelint.gate import diff, match
 from drivelint.result.load import load_result
 from drivelint.result.model import Result
 from tests.fleet import audits
-from tests.fleet.conftest import Checked
+from tests.fleet.conftest import RunCheck
 from tests.report.synthetic import drive, finding, result, rule, verdict
 
 SECOND = 1_000_000_000
-Told = Counter[tuple[str, str, str | None, str]]
+StandingCounts = Counter[tuple[str, str, str | None, str]]
 
 
-def add(con: duckdb.DuckDBPyConnection, told: Result, of: str = "", tags: dict[str, str] | None = None) -> None:
-    tables = (told.drives, told.verdicts, told.findings, told.rules)
+def add(con: duckdb.DuckDBPyConnection, run: Result, of: str = "", tags: dict[str, str] | None = None) -> None:
+    tables = (run.drives, run.verdicts, run.findings, run.rules)
     drives, *rest = (table.to_pylist() for table in tables)
     audits.add_rows(con, [row | {"tags": tags or {}} for row in drives], *rest, of=of)
 
 
-def by_sql(base: Result, new: Result) -> Told:
+def by_sql(base: Result, new: Result) -> StandingCounts:
     with duckdb.connect() as con:
         add(con, base)
         add(con, new, "other_")
@@ -51,7 +51,7 @@ def worse(base: Result, new: Result) -> tuple[Counter[str], Counter[str]]:
     return Counter(name for (name,) in told), Counter(e.finding_id for e in diff.compare(base, new).entries if e.worse)
 
 
-def by_gate(base: Result, new: Result) -> Told:
+def by_gate(base: Result, new: Result) -> StandingCounts:
     return Counter((e.standing, e.finding_id, e.base_id, e.there) for e in diff.compare(base, new).entries)
 
 
@@ -79,9 +79,9 @@ RULES_OF_BASE = tuple(part for name in SOME for part in ("--rules", f"ukhc.{name
     ids=["parameter", "profile", "fewer-rules-and-logs", "not-engaged"],
 )
 def test_it_agrees_with_the_gate_on_real_results(
-    checked: Checked, options: tuple[str, ...], logs: tuple[str, ...]
+    run_check: RunCheck, options: tuple[str, ...], logs: tuple[str, ...]
 ) -> None:
-    base, new = load_result(checked(*RULES_OF_BASE)), load_result(checked(*options, logs=logs))
+    base, new = load_result(run_check(*RULES_OF_BASE)), load_result(run_check(*options, logs=logs))
     for one, other in ((base, new), (new, base)):
         assert by_sql(one, other) == by_gate(one, other)
     assert {standing for standing, *_ in by_sql(base, new)} != {"unchanged"}, "something differs"
@@ -184,8 +184,8 @@ def test_it_agrees_with_the_gate_on_random_results(seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_an_audit_against_itself_has_nothing(checked: Checked) -> None:
-    base = load_result(checked(*RULES_OF_BASE))
+def test_an_audit_against_itself_has_nothing(run_check: RunCheck) -> None:
+    base = load_result(run_check(*RULES_OF_BASE))
     told = by_sql(base, base)
     assert {standing for standing, *_ in told} == {"unchanged"}
     assert told.total() == base.findings.num_rows
@@ -203,8 +203,8 @@ def compared(base: Result, new: Result, tags: tuple[dict[str, str], dict[str, st
 
 
 @pytest.mark.ci
-def test_planted_changes_and_only_they(checked: Checked) -> None:
-    base = load_result(checked(*RULES_OF_BASE))
+def test_planted_changes_and_only_they(run_check: RunCheck) -> None:
+    base = load_result(run_check(*RULES_OF_BASE))
     rows = base.findings.to_pylist()
     gone, better, added = rows[0], rows[1], dict(rows[2])
     added |= {"finding_id": "planted", "object_id": "planted", "occurrence": 0}
@@ -232,9 +232,9 @@ def test_an_audit_that_does_not_say_when_actors_were_recorded_is_refused() -> No
 
 
 @pytest.mark.slow
-def test_causes_stand_apart(checked: Checked) -> None:
-    base = load_result(checked(*RULES_OF_BASE))
-    new = load_result(checked(*RULES_OF_BASE, "--param", "ukhc.overtake-zone.margin_s=0.1"))
+def test_causes_stand_apart(run_check: RunCheck) -> None:
+    base = load_result(run_check(*RULES_OF_BASE))
+    new = load_result(run_check(*RULES_OF_BASE, "--param", "ukhc.overtake-zone.margin_s=0.1"))
     found = compared(base, new, ({"release": "1"}, {"release": "1"}), tools=("0.1", "0.1"))
     moved = [each for each in found.differences if each.standing != "unchanged"]
     assert {(each.rule_id, each.causes, each.causes_not_known) for each in moved} == {
@@ -248,7 +248,7 @@ def test_causes_stand_apart(checked: Checked) -> None:
 
 
 def test_other_logs_and_rules_are_causes_too() -> None:
-    def one(name: str, **over: Any) -> Result:
+    def run_of_drive(name: str, **over: Any) -> Result:
         rows = [verdict("fail", drive_id=name)], [finding(drive_id=name)]
         return result(
             *rows,
@@ -256,7 +256,7 @@ def test_other_logs_and_rules_are_causes_too() -> None:
             rules=[rule(rule_version=over["v"])],
         )
 
-    found = compared(one("d", sha="a", map="m", v="1"), one("d", sha="b", map="n", v="2"), ({}, {}))
+    found = compared(run_of_drive("d", sha="a", map="m", v="1"), run_of_drive("d", sha="b", map="n", v="2"), ({}, {}))
     (only,) = found.differences
     assert (only.standing, only.causes, only.causes_not_known) == (
         "unchanged",
@@ -379,12 +379,12 @@ def test_a_true_difference_is_called_and_shared_logs_are_left_out(seeded: duckdb
     )
 
 
-@pytest.mark.parametrize("changed", ["ab", "a", ""])
-def test_logs_of_one_name_in_two_folders_are_told_apart_by_their_place(changed: str) -> None:
+@pytest.mark.parametrize("changed_sites", ["ab", "a", ""])
+def test_logs_of_one_name_in_two_folders_are_told_apart_by_their_place(changed_sites: str) -> None:
     """Where both were recorded anew, content, id and name do not say which is which."""
     with duckdb.connect() as con:
         for of, version in (("", 1), ("other_", 2)):
-            content = {site: f"{site}{version if site in changed else 1}" for site in "ab"}
+            content = {site: f"{site}{version if site in changed_sites else 1}" for site in "ab"}
             drives = [drive(f"cut-in-{content[site]}", file_name="cut-in.csv", sha256=content[site]) for site in "ab"]
             told = result([verdict("pass", drive_id=f"cut-in-{content[site]}") for site in "ab"], drives=drives)
             rows = [row | {"log": f"{row['sha256'][0]}/cut-in.csv", "tags": {}} for row in told.drives.to_pylist()]
@@ -393,4 +393,4 @@ def test_logs_of_one_name_in_two_folders_are_told_apart_by_their_place(changed: 
         found = compare(con)
         pairs = con.execute("SELECT base_key, new_key, data FROM same_drive ORDER BY 1").fetchall()
     assert (found.drives_both, found.drives_base_only, found.drives_new_only) == (2, 0, 0)
-    assert pairs == [(f"cut-in-{s}1", f"cut-in-{s}{2 if s in changed else 1}", s in changed) for s in "ab"]
+    assert pairs == [(f"cut-in-{s}1", f"cut-in-{s}{2 if s in changed_sites else 1}", s in changed_sites) for s in "ab"]

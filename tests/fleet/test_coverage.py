@@ -12,7 +12,7 @@ from drivelint.fleet.coverage import STANDINGS, coverage
 from drivelint.fleet.missing_signals import SignalGaps, missing_signals
 from drivelint.fleet.rates import rates
 from tests.fleet import audits
-from tests.fleet.conftest import Checked
+from tests.fleet.conftest import RunCheck
 from tests.report.synthetic import drive, rule, verdict
 
 
@@ -87,8 +87,8 @@ def test_a_tag_does_not_hide_the_condition_of_the_same_name() -> None:
 
 
 @pytest.mark.slow
-def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Checked) -> None:
-    folder = checked()
+def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(run_check: RunCheck) -> None:
+    folder = run_check()
     verdicts = pq.read_table(folder / "verdicts.parquet").to_pylist()
     occasions = {
         (each["rule_id"], each["profile"]): each["n_judged"]
@@ -127,8 +127,8 @@ def of_check(folder: Any) -> SignalGaps:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rules", ["alks-r157"])
-def test_the_forecast_of_a_signal_is_what_is_judged_when_it_is_supplied(checked: Checked, rules: str) -> None:
-    before, after = checked("--rules", rules), checked("--rules", rules, "--env", "engaged=yes")
+def test_the_forecast_of_a_signal_is_what_is_judged_when_it_is_supplied(run_check: RunCheck, rules: str) -> None:
+    before, after = run_check("--rules", rules), run_check("--rules", rules, "--env", "engaged=yes")
     (signal,) = [each for each in of_check(before).signals if each.signal == "mode_engaged"]
     assert 0 < signal.judgements_alone < signal.judgements, "some of these rules need more than that signal"
     assert signal.drives == signal.drives_alone == 3

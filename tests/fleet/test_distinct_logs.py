@@ -20,7 +20,7 @@ from drivelint.fleet_report.difference import difference
 from drivelint.fleet_report.difference_text import to_text
 from drivelint.sql.statements import statement
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.report.synthetic import rule
 
 pytestmark = pytest.mark.ci
@@ -37,7 +37,7 @@ def result(name: str, *egos: tuple[str, float], **over: Any) -> dict[str, Any]:
     return ego_drive(name, **({"sha256": "same", "exposure": [way(*ego) for ego in egos]} | over))
 
 
-def judged(
+def audit_database(
     drives: list[Any], verdicts: list[Any] | None = None, findings: list[Any] | None = None, of: str = ""
 ) -> Any:
     con = duckdb.connect()
@@ -47,7 +47,7 @@ def judged(
 
 
 def add(con: Any, drives: list[Any], verdicts: list[Any] | None, findings: list[Any] | None, of: str = "") -> None:
-    every = [said(row["drive_id"], "pass", ego_id=ego["ego_id"]) for row in drives for ego in row["exposure"]]
+    every = [drive_verdict(row["drive_id"], "pass", ego_id=ego["ego_id"]) for row in drives for ego in row["exposure"]]
     audits.add_rows(con, drives, every if verdicts is None else verdicts, findings or [], [RULE], of=of)
 
 
@@ -68,7 +68,7 @@ TWICE = [
 
 @pytest.mark.parametrize(("drives", "expected"), TWICE)
 def test_a_log_and_an_ego_count_once_and_other_egos_each(drives: list[Any], expected: tuple[Any, ...]) -> None:
-    told = totals(con := judged(drives))
+    told = totals(con := audit_database(drives))
     n, n_egos, km = expected
     assert (told["drives"], told["egos"], told["km"]) == (n, n_egos, km)
     (rate,) = rates(con)
@@ -81,8 +81,15 @@ def test_a_log_and_an_ego_count_once_and_other_egos_each(drives: list[Any], expe
 
 def test_what_two_results_share_counts_once_and_what_one_of_them_has_counts() -> None:
     drives = [result("a", ("1", 3.0)), result("b", ("1", 3.0), ("2", 4.0))]
-    findings = [found("a"), found("b"), found("b", ego_id="2", finding_id="other ego"), found("b", object_id="9")]
-    con = judged(drives, [said("a", "fail"), said("b", "fail"), said("b", "unknown")], findings)
+    findings = [
+        drive_finding("a"),
+        drive_finding("b"),
+        drive_finding("b", ego_id="2", finding_id="other ego"),
+        drive_finding("b", object_id="9"),
+    ]
+    con = audit_database(
+        drives, [drive_verdict("a", "fail"), drive_verdict("b", "fail"), drive_verdict("b", "unknown")], findings
+    )
     rows = con.sql(f"SELECT key, result_key, ego_id, object_id FROM {COUNTED_PREFIX}findings ORDER BY ALL").fetchall()
     assert [row[0] for row in rows] == ["a"] * 3
     assert [row[1] for row in rows] == ["a", "b", "b"]
@@ -91,13 +98,13 @@ def test_what_two_results_share_counts_once_and_what_one_of_them_has_counts() ->
 
 def test_the_first_result_does_not_depend_on_keys() -> None:
     """Keys are hashes of versions too: two audits of the same logs must take the same results."""
-    con = judged([result("a", ("1", 3.0), file_name="z.mcap"), result("b", ("1", 3.0), file_name="y.mcap")])
+    con = audit_database([result("a", ("1", 3.0), file_name="z.mcap"), result("b", ("1", 3.0), file_name="y.mcap")])
     assert con.sql(f"SELECT key FROM {COUNTED_PREFIX}drives").fetchall() == [("b",)]
 
 
 def test_a_tag_with_several_values_is_not_known_of_a_log() -> None:
     tags = ({"release": "a", "site": "x"}, {"release": "b", "site": "x"}, {"vehicle": "v"})
-    con = judged([result(name, ("1", 3.0), tags=each) for name, each in zip("abc", tags, strict=True)])
+    con = audit_database([result(name, ("1", 3.0), tags=each) for name, each in zip("abc", tags, strict=True)])
     ((told,),) = con.sql(f"SELECT tags FROM {COUNTED_PREFIX}drives").fetchall()
     assert told == {"site": "x", "vehicle": "v"}
     assert {each.tag_value: each.km for each in rates(con, "release")} == {"a": 3.0, "b": 3.0, None: 3.0}
@@ -105,7 +112,11 @@ def test_a_tag_with_several_values_is_not_known_of_a_log() -> None:
 
 def test_a_drive_that_could_not_be_judged_stands_for_no_other() -> None:
     lost = result("0", status="not_judged", sha256="same")
-    assert [totals(judged([lost, result("a", ("1", 3.0))]))[name] for name in ("drives", "judged", "km")] == [2, 1, 3.0]
+    assert [totals(audit_database([lost, result("a", ("1", 3.0))]))[name] for name in ("drives", "judged", "km")] == [
+        2,
+        1,
+        3.0,
+    ]
 
 
 def compared(base: list[Any], new: list[Any]) -> Any:
@@ -114,8 +125,8 @@ def compared(base: list[Any], new: list[Any]) -> Any:
     sides = []
     for of, drives in ((BASE_PREFIX, base), ("", new)):
         egos = [(row["drive_id"], ego["ego_id"]) for row in drives for ego in row["exposure"]]
-        findings = [found(name, ego_id=ego, finding_id=f"{name}-{ego}") for name, ego in egos]
-        add(con, drives, [said(name, "fail", ego_id=ego) for name, ego in egos], findings, of)
+        findings = [drive_finding(name, ego_id=ego, finding_id=f"{name}-{ego}") for name, ego in egos]
+        add(con, drives, [drive_verdict(name, "fail", ego_id=ego) for name, ego in egos], findings, of)
         sides.append(Audit(of or "new", LocalFolder(Path(of)), {"settings": {}}, AuditProgress("d")))
     return difference(con, sides[1], sides[0], 50)
 

@@ -14,13 +14,13 @@ from drivelint.errors import UsageError
 from drivelint.fleet import intervals
 from drivelint.fleet.rates import Rate, rates
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.report.synthetic import drive, rule
 
 ROOM = rule(profiles=[])
 
 
-def counted(
+def rates_of(
     drives: list[Any], verdicts: list[Any], findings: list[Any], by: str | None = None, rules: Any = (ROOM,)
 ) -> list[Rate]:
     with duckdb.connect() as con:
@@ -29,15 +29,19 @@ def counted(
 
 
 def only(drives: list[Any], verdicts: list[Any], findings: list[Any]) -> Rate:
-    (rate,) = counted(drives, verdicts, findings)
+    (rate,) = rates_of(drives, verdicts, findings)
     return rate
 
 
 def test_findings_and_exposure_of_wholly_judged_drives() -> None:
     rate = only(
         [ego_drive("a"), ego_drive("b")],
-        [said("a", "fail"), said("a", "pass"), said("b", "not_applicable", n_expected=0, n_judged=0)],
-        [found("a"), found("a", occurrence=1)],
+        [
+            drive_verdict("a", "fail"),
+            drive_verdict("a", "pass"),
+            drive_verdict("b", "not_applicable", n_expected=0, n_judged=0),
+        ],
+        [drive_finding("a"), drive_finding("a", occurrence=1)],
     )
     assert (rate.findings, rate.km, rate.hours, rate.egos_judged, rate.egos_failed) == (2, 200, 4, 2, 1)
     assert (rate.per_100km.rate, rate.per_hour.rate) == (1.0, 0.5)
@@ -46,15 +50,15 @@ def test_findings_and_exposure_of_wholly_judged_drives() -> None:
 
 @pytest.mark.parametrize(
     "beside",
-    [said("b", "unknown"), said("b", "error"), said("b", "fail", n_expected=5, n_judged=4)],
+    [drive_verdict("b", "unknown"), drive_verdict("b", "error"), drive_verdict("b", "fail", n_expected=5, n_judged=4)],
     ids=lambda row: str(row["verdict"]),
 )
 def test_a_drive_that_is_not_wholly_judged_stands_beside(beside: dict[str, Any]) -> None:
     """With a finding or without: else the outcome would decide what is counted."""
     rate = only(
         [ego_drive("a"), ego_drive("b", km=50.0)],
-        [said("a", "pass"), said("b", "pass"), said("b", "fail"), beside],
-        [found("b")],
+        [drive_verdict("a", "pass"), drive_verdict("b", "pass"), drive_verdict("b", "fail"), beside],
+        [drive_finding("b")],
     )
     assert (rate.findings, rate.km, rate.findings_of_unknown, rate.km_unknown, rate.egos_unknown) == (0, 100, 1, 50, 1)
     assert (rate.per_100km.rate, rate.per_100km.low) == (0.0, 0.0)
@@ -66,13 +70,15 @@ def test_a_drive_that_is_not_wholly_judged_stands_beside(beside: dict[str, Any])
 
 
 def test_only_the_automated_drivers_way_counts() -> None:
-    assert only([ego_drive("a", engaged_km=30.0)], [said("a", "pass")], []).km == 30
-    assert only([ego_drive("a", engaged_km=0.0)], [said("a", "unknown")], []).km_unknown == 100, "it may be all of it"
+    assert only([ego_drive("a", engaged_km=30.0)], [drive_verdict("a", "pass")], []).km == 30
+    assert only([ego_drive("a", engaged_km=0.0)], [drive_verdict("a", "unknown")], []).km_unknown == 100, (
+        "it may be all of it"
+    )
 
 
 @pytest.mark.parametrize("code", ["other_nation", "not_engaged", "outside_conditions"])
 def test_a_drive_in_which_the_rule_was_never_in_force_is_no_exposure(code: str) -> None:
-    rate = only([ego_drive("a")], [said("a", "not_applicable", reason_code=code)], [])
+    rate = only([ego_drive("a")], [drive_verdict("a", "not_applicable", reason_code=code)], [])
     assert (rate.km, rate.km_unknown, rate.egos_outside, rate.egos_judged) == (0, 0, 1, 0)
     assert rate.per_100km == (None, 0.0, inf), "without exposure nothing is known"
     assert rate.at_least_per_100km is None
@@ -80,7 +86,7 @@ def test_a_drive_in_which_the_rule_was_never_in_force_is_no_exposure(code: str) 
 
 def test_a_drive_that_could_not_be_judged_is_counted_and_has_no_way() -> None:
     lost = drive("lost", status="not_judged", sha256=None, tags={"release": "b"})
-    by_release = counted([ego_drive("a"), lost], [said("a", "pass")], [], by="release")
+    by_release = rates_of([ego_drive("a"), lost], [drive_verdict("a", "pass")], [], by="release")
     assert [(r.tag_value, r.egos_judged, r.drives_not_judged, r.km) for r in by_release] == [
         ("a", 1, 0, 100),
         ("b", 0, 1, 0),
@@ -89,16 +95,20 @@ def test_a_drive_that_could_not_be_judged_is_counted_and_has_no_way() -> None:
 
 def test_a_log_that_is_there_twice_was_driven_once() -> None:
     twice = [ego_drive("a", sha256="same"), ego_drive("b", sha256="same", tags={"release": "b"})]
-    words = [said("a", "fail"), said("b", "fail")]
-    findings = [found("a"), found("b")]
-    assert [(r.findings, r.km) for r in counted(twice, words, findings)] == [(1, 100)]
-    assert [(r.tag_value, r.km) for r in counted(twice, words, findings, by="release")] == [("a", 100), ("b", 100)]
+    words = [drive_verdict("a", "fail"), drive_verdict("b", "fail")]
+    findings = [drive_finding("a"), drive_finding("b")]
+    assert [(r.findings, r.km) for r in rates_of(twice, words, findings)] == [(1, 100)]
+    assert [(r.tag_value, r.km) for r in rates_of(twice, words, findings, by="release")] == [("a", 100), ("b", 100)]
 
 
 def test_a_verdict_without_profile_stands_for_all_profiles() -> None:
-    rows = counted(
+    rows = rates_of(
         [ego_drive("a"), ego_drive("b")],
-        [said("a", "pass", profile="nominal"), said("a", "pass", profile="relaxed"), said("b", "unknown")],
+        [
+            drive_verdict("a", "pass", profile="nominal"),
+            drive_verdict("a", "pass", profile="relaxed"),
+            drive_verdict("b", "unknown"),
+        ],
         [],
         rules=[rule(profiles=["nominal", "relaxed"])],
     )
@@ -107,38 +117,46 @@ def test_a_verdict_without_profile_stands_for_all_profiles() -> None:
 
 def test_a_drive_without_the_tag_has_no_value_and_a_tag_of_none_is_refused() -> None:
     drives = [ego_drive("a"), ego_drive("b", tags={})]
-    rows = counted(drives, [said("a", "pass"), said("b", "pass")], [], by="release")
+    rows = rates_of(drives, [drive_verdict("a", "pass"), drive_verdict("b", "pass")], [], by="release")
     assert [r.tag_value for r in rows] == [None, "a"]
     with pytest.raises(UsageError, match="did you mean 'release'"):
-        counted(drives, [], [], by="releases")
+        rates_of(drives, [], [], by="releases")
 
 
 def test_a_tag_is_bound_and_a_condition_of_the_drive_is_a_tag_too() -> None:
     wet = [{"condition": "weather", "value": "wet", "source": "env"}]
-    rows = counted([ego_drive("a", conditions=wet)], [said("a", "pass")], [], by="weather")
+    rows = rates_of([ego_drive("a", conditions=wet)], [drive_verdict("a", "pass")], [], by="weather")
     assert [r.tag_value for r in rows] == ["wet"]
     with pytest.raises(UsageError):
-        counted([ego_drive("a")], [], [], by="x'] OR true --")
+        rates_of([ego_drive("a")], [], [], by="x'] OR true --")
 
 
 def test_measured_situations_are_tags() -> None:
-    (slow, fast) = counted(
+    (slow, fast) = rates_of(
         [ego_drive("a", km=20.0, n_states=90, n_steps=9), ego_drive("b", km=200.0, n_states=9, n_steps=9)],
-        [said("a", "pass"), said("b", "pass")], [], by="speed_band",
+        [drive_verdict("a", "pass"), drive_verdict("b", "pass")], [], by="speed_band",
     )  # fmt: skip
     assert (slow.tag_value, fast.tag_value) == ("0 to 15 km/h", "90 km/h and more")
 
 
 def test_an_ego_without_steps_is_counted_and_has_no_way() -> None:
-    rate = only([ego_drive("a"), drive("b", sha256="b")], [said("a", "pass"), said("b", "unknown", ego_id="")], [])
+    rate = only(
+        [ego_drive("a"), drive("b", sha256="b")],
+        [drive_verdict("a", "pass"), drive_verdict("b", "unknown", ego_id="")],
+        [],
+    )
     assert (rate.egos_judged, rate.egos_unknown, rate.km, rate.km_unknown, rate.n_unknown) == (1, 1, 100, 0, 1)
 
 
 def test_possible_findings_are_told() -> None:
     rate = only(
         [ego_drive("a")],
-        [said("a", "fail")],
-        [found("a", n_copies=100, n_stays=94), found("a", n_copies=100, n_stays=95), found("a")],
+        [drive_verdict("a", "fail")],
+        [
+            drive_finding("a", n_copies=100, n_stays=94),
+            drive_finding("a", n_copies=100, n_stays=95),
+            drive_finding("a"),
+        ],
     )
     assert (rate.findings, rate.findings_possible) == (3, 1)
 

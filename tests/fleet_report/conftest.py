@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import pytest
 
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.fleet_report import lake
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def audited(tmp_path_factory: pytest.TempPathFactory) -> Audited:
     fleets = [fleet.write(home / f"fleet-{seed}", N_DRIVES, seed) for seed in (0, 1)]
     outs = [home / "base", home / "new"]
     for drives, out in zip(fleets, outs, strict=True):
-        judged(drives, out)
+        run_audit(drives, out)
     return Audited(outs[0], outs[1], fleets[0], fleets[1])
 
 

@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.fleet_report import page
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
@@ -32,7 +32,7 @@ def compared(base: Path, new: Path, *more: str) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def checked(audited: Audited, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+def check_folders(audited: Audited, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Return results of `check` on the drives of both audits."""
     outs = []
     for drives in (audited.base_fleet, audited.new_fleet):
@@ -56,15 +56,15 @@ def checked(audited: Audited, tmp_path_factory: pytest.TempPathFactory) -> list[
 
 
 @pytest.mark.slow
-def test_it_says_what_diff_says_of_two_checks(audited: Audited, checked: list[Path]) -> None:
-    ours, theirs = compared(audited.base, audited.new), compared(checked[0], checked[1])
+def test_it_says_what_diff_says_of_two_checks(audited: Audited, check_folders: list[Path]) -> None:
+    ours, theirs = compared(audited.base, audited.new), compared(check_folders[0], check_folders[1])
     assert ours["counts"] == theirs["counts"]
     assert ours["counts"]["new"]
     assert ours["counts"]["fixed"]
     assert (ours["exit"], ours["verdicts"]) == (theirs["exit"], theirs["verdicts"])
 
-    def entries(found: dict[str, Any]) -> Counter[Any]:
-        kept = [each for each in found["entries"] if each["standing"] != "unchanged"]
+    def entries(difference: dict[str, Any]) -> Counter[Any]:
+        kept = [each for each in difference["entries"] if each["standing"] != "unchanged"]
         return Counter(
             (e["standing"], e["drive_id"][:11], e["t_s"], e["there"], e["margin"], e["base_margin"]) for e in kept
         )
@@ -78,22 +78,22 @@ def test_it_says_what_diff_says_of_two_checks(audited: Audited, checked: list[Pa
 
 
 @pytest.mark.slow
-def test_the_text_has_the_same_words(audited: Audited, checked: list[Path]) -> None:
-    ours, theirs = ran("diff", audited.base, audited.new), ran("diff", *checked)
+def test_the_text_has_the_same_words(audited: Audited, check_folders: list[Path]) -> None:
+    ours, theirs = ran("diff", audited.base, audited.new), ran("diff", *check_folders)
     assert ours.code == theirs.code == 1
 
-    def told(text: str) -> list[str]:
+    def summary_lines(text: str) -> list[str]:
         return [
             line
             for line in text.splitlines()
             if line.startswith(("exit", "New (", "Fixed (", "Changed")) or re.match(r"\d+ new.*, ", line)
         ]
 
-    assert told(ours.out) == told(theirs.out)
+    assert summary_lines(ours.out) == summary_lines(theirs.out)
     assert "differs: data" in ours.out
     assert ran("diff", audited.base, audited.new, "--fail-on", "never").code == 0
     assert ran("diff", audited.base, audited.new, "--format", "markdown").out.startswith(
-        f"## drivelint diff: {told(ours.out)[0][:5]}"
+        f"## drivelint diff: {summary_lines(ours.out)[0][:5]}"
     )
 
 
@@ -167,10 +167,10 @@ def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path)
 def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_finding(tmp_path: Path) -> None:
     """Of its map it is not known whether it differs; the exit code is that of two checks."""
     drives = fleet.write(tmp_path / "fleet", 8)
-    judged(drives, tmp_path / "base")
+    run_audit(drives, tmp_path / "base")
     for log in (drives.manifest.parent / "logs").iterdir():
         log.write_bytes(log.read_bytes()[:100] + log.name.encode())  # each another content
-    judged(drives, tmp_path / "new")
+    run_audit(drives, tmp_path / "new")
     base, new = tmp_path / "base", tmp_path / "new"
     found = compared(base, new, "--fail-on", "never")
     assert [each["base_log"] for each in found["no_more_judged"]] == sorted(
@@ -194,8 +194,8 @@ def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_findi
         assert "udged in the baseline, but not in this audit:" in (new / name).read_text(encoding="utf-8")
 
 
-def test_an_audit_and_a_check_are_not_compared(audited: Audited, checked: list[Path]) -> None:
-    done = ran("diff", audited.base, checked[1])
+def test_an_audit_and_a_check_are_not_compared(audited: Audited, check_folders: list[Path]) -> None:
+    done = ran("diff", audited.base, check_folders[1])
     assert done.code == 2
     assert "no audit is here" in done.err
-    assert ran("diff", *checked, "--rows", "x.parquet").code == 2
+    assert ran("diff", *check_folders, "--rows", "x.parquet").code == 2

@@ -21,7 +21,7 @@ from drivelint.fleet_report import drive_pages, moment_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
 from drivelint.result.counts import one_finding_per_event
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.report.synthetic import rule
@@ -191,35 +191,35 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
 
 @pytest.mark.slow
 def test_the_same_audit_gives_the_same_bytes(lake_copy: Path) -> None:
-    assert made(lake_copy, 20) == made(lake_copy, 20)
+    assert pages_by_name(lake_copy, 20) == pages_by_name(lake_copy, 20)
 
 
 @pytest.mark.slow
 def test_more_pages_take_no_more_statements_and_do_not_change(lake_copy: Path) -> None:
-    few, many = Counted(), Counted()
-    assert made(lake_copy, 3, few).items() <= made(lake_copy, 90, many).items()
+    few, many = StatementCounter(), StatementCounter()
+    assert pages_by_name(lake_copy, 3, few).items() <= pages_by_name(lake_copy, 90, many).items()
     assert few.n == many.n < 12
 
 
-class Counted:
+class StatementCounter:
     """Counts the statements that go to a database."""
 
     def __init__(self) -> None:
         self.con: Any = None
         self.n = 0
 
-    def execute(self, *asked: Any) -> Any:
+    def execute(self, *arguments: Any) -> Any:
         self.n += 1
-        return self.con.execute(*asked)
+        return self.con.execute(*arguments)
 
 
-def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, bytes]:
+def pages_by_name(audit: Path, max_drives: int, counter: StatementCounter | None = None) -> dict[str, bytes]:
     with open_audits(str(audit)) as (con, told, _):
         found = content_.fleet_content(con, told, None, ())
         through: Any = con
-        if counted is not None:
-            counted.con, through = con, counted
-        drive_pages.choose_drives_and_return_page_names(through, most)
+        if counter is not None:
+            counter.con, through = con, counter
+        drive_pages.choose_drives_and_return_page_names(through, max_drives)
         return dict(drive_pages.pages(through, told, found.rules))
 
 
@@ -238,13 +238,13 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
         ego_drive("b", sha256="same"),
     ]
     verdicts = [
-        said("a", "fail"),
-        said("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
+        drive_verdict("a", "fail"),
+        drive_verdict("a", "error", rule_id="z-contact", reason_code="rule_timeout", reason="took 31 s"),
     ]
     rules = [rule(profiles=[], status="draft"), rule("z-contact", profiles=[])]
     with duckdb.connect() as con:
         audits.add_rows(
-            con, drives, verdicts, [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
+            con, drives, verdicts, [drive_finding("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
@@ -270,12 +270,16 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
 
 
 def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> None:
-    twice = [found("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
+    twice = [drive_finding("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
     for row in twice:
         row |= {"t_start_s": 1.0, "t_worst_s": 1.0}
     with duckdb.connect() as con:
         audits.add_rows(
-            con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
+            con,
+            [ego_drive("a")],
+            [drive_verdict("a", "fail", profile=row["profile"]) for row in twice],
+            twice,
+            [rule()],
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
@@ -326,17 +330,17 @@ def test_the_baseline_leads_to_the_pages(lake_copy: Path, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("options", "message"),
     [
         (("--drive-pages", "some"), "write a number such as 100, or all"),
         (("--drive-pages", "-1"), "write a number such as 100, or all"),
         (("--drive-pages", "5", "--to", "markdown"), "are for --to html"),
     ],
 )
-def test_mistakes_are_told(lake_copy: Path, asked: tuple[str, ...], said: str) -> None:
-    done = ran("report", lake_copy, *asked)
+def test_mistakes_are_told(lake_copy: Path, options: tuple[str, ...], message: str) -> None:
+    done = ran("report", lake_copy, *options)
     assert done.code == 2
-    assert said in done.err
+    assert message in done.err
 
 
 def test_drive_pages_are_of_audits_only(tmp_path: Path) -> None:

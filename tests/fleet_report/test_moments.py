@@ -39,7 +39,7 @@ def audited(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def own(audited: Path, tmp_path: Path) -> Path:
+def audit_copy(audited: Path, tmp_path: Path) -> Path:
     """Return a copy of the audit that a test may change; its logs lie where they were judged."""
     shutil.copytree(audited / "audit", tmp_path / "audit")
     return tmp_path / "audit"
@@ -77,15 +77,15 @@ def test_the_page_is_that_of_a_check_without_commands_for_its_folder(audited: Pa
     assert (audited / "audit" / "drives" / href).read_text() == checked
 
 
-def test_the_number_of_drives_is_an_option_and_old_pages_go(own: Path) -> None:
-    assert len(list(own.glob("drives/*-moments.html"))) == len(LOGS)
-    assert ran("report", own, "--moments", 1).code == 0
-    assert len(list(own.glob("drives/*-moments.html"))) == 1
-    listed = json.loads((own / "drives" / "pages.json").read_text())["written_by_drivelint"]
-    assert sorted(listed) == sorted(f"drives/{file.name}" for file in own.glob("drives/*.html"))
-    assert "report --moments N" in page_of(own, "safe").text_content()
-    assert ran("report", own, "--moments", 0).code == 0
-    assert not list(own.glob("drives/*-moments.html"))
+def test_the_number_of_drives_is_an_option_and_old_pages_go(audit_copy: Path) -> None:
+    assert len(list(audit_copy.glob("drives/*-moments.html"))) == len(LOGS)
+    assert ran("report", audit_copy, "--moments", 1).code == 0
+    assert len(list(audit_copy.glob("drives/*-moments.html"))) == 1
+    listed = json.loads((audit_copy / "drives" / "pages.json").read_text())["written_by_drivelint"]
+    assert sorted(listed) == sorted(f"drives/{file.name}" for file in audit_copy.glob("drives/*.html"))
+    assert "report --moments N" in page_of(audit_copy, "safe").text_content()
+    assert ran("report", audit_copy, "--moments", 0).code == 0
+    assert not list(audit_copy.glob("drives/*-moments.html"))
 
 
 def test_a_changed_log_has_no_moments(audited: Path, tmp_path: Path) -> None:
@@ -111,7 +111,7 @@ def test_a_changed_log_has_no_moments(audited: Path, tmp_path: Path) -> None:
     assert "could not be drawn: the log is not at" in page.read_text()
 
 
-def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_findings_are_no_moments_of_these(audit_copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As of another version of the program: positions of one judgement do not illustrate the verdicts of another."""
     judged_again = moment_pages._check_again
 
@@ -122,19 +122,19 @@ def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.M
         return replace(result, findings=result.findings.slice(1))
 
     monkeypatch.setattr(moment_pages, "_check_again", with_fewer)
-    assert ran("report", own).code == 0
-    assert not list(own.glob("drives/*-moments.html"))
-    assert "this version of drivelint gives other findings" in page_of(own, "collision").text_content()
+    assert ran("report", audit_copy).code == 0
+    assert not list(audit_copy.glob("drives/*-moments.html"))
+    assert "this version of drivelint gives other findings" in page_of(audit_copy, "collision").text_content()
 
 
-def test_long_drives_are_left_out_unless_they_are_asked_for(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_drives_are_left_out_unless_they_are_asked_for(audit_copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(moment_pages, "DEFAULT_MAX_STATES_OF_DRIVE_WITH_MOMENTS", 100)
-    assert ran("report", own).code == 0
-    assert not list(own.glob("drives/*-moments.html"))
-    assert ran("report", own, "--moments", 2).code == 0
-    assert len(list(own.glob("drives/*-moments.html"))) == 2
+    assert ran("report", audit_copy).code == 0
+    assert not list(audit_copy.glob("drives/*-moments.html"))
+    assert ran("report", audit_copy, "--moments", 2).code == 0
+    assert len(list(audit_copy.glob("drives/*-moments.html"))) == 2
 
 
-def test_moments_are_of_pages(own: Path) -> None:
-    assert ran("report", own, "--to", "markdown", "--moments", 2).code == 2
-    assert ran("report", own, "--to", "junit", "--moments", 2).code == 2
+def test_moments_are_of_pages(audit_copy: Path) -> None:
+    assert ran("report", audit_copy, "--to", "markdown", "--moments", 2).code == 2
+    assert ran("report", audit_copy, "--to", "junit", "--moments", 2).code == 2

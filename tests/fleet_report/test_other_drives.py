@@ -20,7 +20,7 @@ from drivelint.fleet_report.audit_views import Audit
 from drivelint.fleet_report.difference import AuditDifference, difference
 from drivelint.fleet_report.figures import number_text
 from tests.fleet import audits
-from tests.fleet.audits import ego_drive, found, said
+from tests.fleet.audits import drive_finding, drive_verdict, ego_drive
 from tests.report.synthetic import rule
 
 pytestmark = pytest.mark.ci
@@ -36,12 +36,13 @@ def fleet(con: duckdb.DuckDBPyConnection, of: str, release: str, also: tuple[str
     name = f"drive-{release}"
     drives = [ego_drive(each, tags={"release": release}) for each in (name, *also)]
     verdicts = [
-        said(name, "fail" if k < failed else "pass", rule_id="overtake", occurrence=k, ref_id=None) for k in range(n)
+        drive_verdict(name, "fail" if k < failed else "pass", rule_id="overtake", occurrence=k, ref_id=None)
+        for k in range(n)
     ]
-    verdicts += [said(each, "pass", rule_id="follow", ref_id=None) for each in (name, *also)]
-    verdicts += [said(name, "pass", rule_id=each, ref_id=None) for each in ("silent", "still")]
+    verdicts += [drive_verdict(each, "pass", rule_id="follow", ref_id=None) for each in (name, *also)]
+    verdicts += [drive_verdict(name, "pass", rule_id=each, ref_id=None) for each in ("silent", "still")]
     findings = [
-        found(
+        drive_finding(
             name, rule_id="overtake", occurrence=k, finding_id=f"{name}-{k}", t_start_ns=k * 10**10, t_end_ns=k * 10**10
         )
         for k in range(failed)
@@ -74,8 +75,8 @@ def test_audits_without_a_common_drive_are_told_as_such(disjoint: AuditDifferenc
 
 
 def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifference) -> None:
-    def code(asked: str | None) -> ExitCode:
-        return difference_text.exit_code(disjoint, difference_text.gating_severity(disjoint, asked))
+    def code(fail_on: str | None) -> ExitCode:
+        return difference_text.exit_code(disjoint, difference_text.gating_severity(disjoint, fail_on))
 
     assert code(None) == ExitCode.FAILED
     assert code("critical") == ExitCode.FAILED
@@ -122,7 +123,7 @@ def test_audits_without_rates_or_without_an_end_are_no_pass(disjoint: AuditDiffe
 def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
     with duckdb.connect() as con:
         fleet(con, "base_", "r1", ("shared",))
-        audits.add_rows(con, [ego_drive("shared")], [said("shared", "pass")], [], RULES)
+        audits.add_rows(con, [ego_drive("shared")], [drive_verdict("shared", "pass")], [], RULES)
         sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         told = difference(con, sides[0], sides[1], 50)
     assert told.counts["lost"] == 2
@@ -140,11 +141,11 @@ def test_findings_of_added_drives_are_told_apart() -> None:
     assert difference_text.gating_severity(told, None) == "critical"
 
 
-FEW = ("shared", "lone-1", "lone-2", "lone-3")
+FOUR_DRIVES = ("shared", "lone-1", "lone-2", "lone-3")
 
 
 def test_fleets_with_few_common_drives_are_compared_by_rates() -> None:
-    told = compared(FEW, ("shared", "other-1", "other-2", "other-3"))
+    told = compared(FOUR_DRIVES, ("shared", "other-1", "other-2", "other-3"))
     assert told.headline == (
         "only 1 drive is in both audits: there 0 new, no earlier finding; 17 findings in 4 drives of the newer audit alone, "
         "2 findings in 4 drives of the base alone; compare rates"
@@ -168,10 +169,10 @@ def test_fleets_with_few_common_drives_are_compared_by_rates() -> None:
 
 def test_new_findings_of_the_few_common_drives_are_still_listed() -> None:
     with duckdb.connect() as con:
-        fleet(con, "base_", "r1", FEW)
+        fleet(con, "base_", "r1", FOUR_DRIVES)
         names = ("shared", *(f"other-{n}" for n in range(60)))
-        verdicts = [said(name, "fail", rule_id="overtake", ref_id=None) for name in names]
-        findings = [found(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
+        verdicts = [drive_verdict(name, "fail", rule_id="overtake", ref_id=None) for name in names]
+        findings = [drive_finding(name, rule_id="overtake", finding_id=f"{name}-0") for name in names]
         audits.add_rows(con, [ego_drive(name) for name in names], verdicts, findings, RULES)
         sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         told = difference(con, sides[0], sides[1], 50)
@@ -222,11 +223,13 @@ def test_the_nearest_candidates_are_shown_where_nothing_is_called() -> None:
 
 
 def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
-    def told(n: int) -> Any:
+    def rates_with_findings(n: int) -> Any:
         with duckdb.connect() as con:
             row = ego_drive("a")
-            audits.add_rows(con, [row], [said("a", "fail" if n else "pass")], [found("a")] * n, [rule(profiles=[])])
+            audits.add_rows(
+                con, [row], [drive_verdict("a", "fail" if n else "pass")], [drive_finding("a")] * n, [rule(profiles=[])]
+            )
             return rates(con)
 
-    (change,) = rate_changes(told(0), told(1))
+    (change,) = rate_changes(rates_with_findings(0), rates_with_findings(1))
     assert [difference_text.ratio_text(each) for each in change.tests] == ["none before"] * 2

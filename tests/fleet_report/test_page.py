@@ -18,14 +18,14 @@ from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.result.counts import SEVERITIES
 from tests.audit import fleet
-from tests.audit.here import judged
+from tests.audit.here import run_audit
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 from tests.fleet_report.conftest import Audited
 
 
 @pytest.fixture(scope="module")
-def written(filled: lake.Lake, audited: Audited) -> Any:
+def fleet_html(filled: lake.Lake, audited: Audited) -> Any:
     done = ran("report", filled.folder, "--by", "site", "--by", "vehicle")
     assert (done.code, done.out.strip()) == (0, f"{filled.folder}/fleet.html")
     return page_of(filled.folder)
@@ -40,8 +40,8 @@ def table(of: Path, name: str) -> dict[str, list[object]]:
     return rows
 
 
-def section(written: Any, name: str) -> Any:
-    (found,) = written.xpath(f"//section[@aria-labelledby='{name}']")
+def section(fleet_html: Any, name: str) -> Any:
+    (found,) = fleet_html.xpath(f"//section[@aria-labelledby='{name}']")
     return found
 
 
@@ -56,25 +56,25 @@ def rows(of: Any, n: int = 0) -> list[dict[str, str]]:
 
 
 @pytest.mark.ci
-def test_the_headline_counts_what_the_tables_have(written: Any, filled: lake.Lake) -> None:
+def test_the_headline_counts_what_the_tables_have(fleet_html: Any, filled: lake.Lake) -> None:
     found = table(filled.folder, "findings")
     n = [found["severity"].count(severity) for severity in ("critical", "major", "minor")]
     assert sum(n) == filled.n_findings
-    (head,) = written.xpath("//h1")
+    (head,) = fleet_html.xpath("//h1")
     n_judged = table(filled.folder, "drives")["status"].count("judged")
     assert n_judged == 1200 - filled.n_not_judged
     told = f"{n[0]:,} critical, {n[1]:,} major, {n[2]:,} minor findings in {len(set(found['key'])):,}"
     said = f"{told} of {n_judged:,} judged drives"
     assert head.text_content().strip() == said
-    assert f"{filled.n_not_judged} could not be judged" in written.xpath("//header")[0].text_content()
+    assert f"{filled.n_not_judged} could not be judged" in fleet_html.xpath("//header")[0].text_content()
 
 
 @pytest.mark.ci
-def test_a_rate_is_that_of_the_wholly_judged_drives(written: Any, filled: lake.Lake) -> None:
+def test_a_rate_is_that_of_the_wholly_judged_drives(fleet_html: Any, filled: lake.Lake) -> None:
     """Against a sum of my own over the tables, and the interval from the chi-square distribution."""
     from scipy.stats import chi2
 
-    told = {row["rule"].split()[-1]: row for row in rows(section(written, "rates"))}
+    told = {row["rule"].split()[-1]: row for row in rows(section(fleet_html, "rates"))}
     drives, verdicts = table(filled.folder, "drives"), table(filled.folder, "verdicts")
     km = dict(zip(drives["key"], drives["km"], strict=True))
     findings = table(filled.folder, "findings")["rule_id"]
@@ -104,15 +104,15 @@ def test_a_rate_is_that_of_the_wholly_judged_drives(written: Any, filled: lake.L
 
 
 @pytest.mark.ci
-def test_rules_with_findings_come_first_and_by_severity(written: Any) -> None:
-    told = rows(section(written, "rates"))
+def test_rules_with_findings_come_first_and_by_severity(fleet_html: Any) -> None:
+    told = rows(section(fleet_html, "rates"))
     order = [(row["findings"] == "0", ["critical", "major", "minor"].index(row["severity"].split()[0])) for row in told]
     assert order == sorted(order)
 
 
 @pytest.mark.ci
-def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(written: Any, filled: lake.Lake) -> None:
-    worst = section(written, "worst-drives")
+def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(fleet_html: Any, filled: lake.Lake) -> None:
+    worst = section(fleet_html, "worst-drives")
     told = rows(worst)
     assert len(told) == content_.MAX_DRIVES_PER_TABLE
     assert filled.worst_log in told[0]["drive"]
@@ -122,8 +122,8 @@ def test_the_worst_drive_is_first_and_what_is_left_out_is_counted(written: Any, 
 
 
 @pytest.mark.ci
-def test_tags_have_a_table_per_rule_and_rare_values_are_counted(written: Any, filled: lake.Lake) -> None:
-    site, vehicle = section(written, "by-1"), section(written, "by-2")
+def test_tags_have_a_table_per_rule_and_rare_values_are_counted(fleet_html: Any, filled: lake.Lake) -> None:
+    site, vehicle = section(fleet_html, "by-1"), section(fleet_html, "by-2")
     assert [row["site"] for row in rows(site)] == ["hull", "leeds", "york"]
     assert len(rows(vehicle)) == 12
     assert "85 values of vehicle that fewer drives have are left out" in " ".join(vehicle.text_content().split())
@@ -136,8 +136,8 @@ def test_tags_have_a_table_per_rule_and_rare_values_are_counted(written: Any, fi
 
 
 @pytest.mark.ci
-def test_what_is_missing_says_what_it_would_decide(written: Any, filled: lake.Lake) -> None:
-    (signal,) = rows(section(written, "open"))
+def test_what_is_missing_says_what_it_would_decide(fleet_html: Any, filled: lake.Lake) -> None:
+    (signal,) = rows(section(fleet_html, "open"))
     rules = pq.read_table(filled.folder / "rules.parquet").to_pydict()
     needing = {
         name for name, requires in zip(rules["rule_id"], rules["requires"], strict=True) if "indicator" in requires
@@ -148,18 +148,18 @@ def test_what_is_missing_says_what_it_would_decide(written: Any, filled: lake.La
     assert signal["signal"] == "indicator"
     assert signal["judgements"] == f"{len(set(hit)):,}"
     assert int(signal["drives"].replace(",", "")) == len({key for key, _ in hit}) > 100
-    lost = rows(section(written, "open"), 1)
+    lost = rows(section(fleet_html, "open"), 1)
     assert len(lost) == filled.n_not_judged
     assert all("cannot be read" in row["why"] for row in lost)
 
 
 @pytest.mark.ci
-def test_the_map_shows_every_finding_or_says_how_many_not(written: Any, filled: lake.Lake) -> None:
-    marks = section(written, "map").xpath(".//circle/title/text()")
+def test_the_map_shows_every_finding_or_says_how_many_not(fleet_html: Any, filled: lake.Lake) -> None:
+    marks = section(fleet_html, "map").xpath(".//circle/title/text()")
     drawn = sum(int(mark.replace(",", "")) for mark in marks)
-    said = re.search(r"([\d,]+) findings in cells with few are not drawn", section(written, "map").text_content())
+    said = re.search(r"([\d,]+) findings in cells with few are not drawn", section(fleet_html, "map").text_content())
     assert drawn + (int(said[1].replace(",", "")) if said else 0) == filled.n_findings
-    xs = sorted(float(x) for x in section(written, "map").xpath(".//circle/@cx"))
+    xs = sorted(float(x) for x in section(fleet_html, "map").xpath(".//circle/@cx"))
     assert xs[0] < 100
     assert xs[-1] > 800  # Leeds in the west, Hull in the east
 
@@ -175,11 +175,11 @@ def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
 
 
 @pytest.mark.slow
-def test_markdown_has_the_same_rates(filled: lake.Lake, written: Any) -> None:
+def test_markdown_has_the_same_rates(filled: lake.Lake, fleet_html: Any) -> None:
     done = ran("report", filled.folder, "--to", "markdown")
     assert done.code == 0
     text = (filled.folder / "fleet.md").read_text(encoding="utf-8")
-    told = [row for row in rows(section(written, "rates")) if row["findings"] != "0"]
+    told = [row for row in rows(section(fleet_html, "rates")) if row["findings"] != "0"]
     assert len(told) > 10
     for row in told:
         assert f"`{row['rule'].split()[-1]}` | {row['severity']} | {row['findings'].replace(',', '')} |" in text
@@ -204,12 +204,12 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     few = fleet.write(tmp_path / "fleet", 3, seed=1)
     log = min((tmp_path / "fleet" / "logs").iterdir())
     out = tmp_path / "out"
-    judged(few, out)
+    run_audit(few, out)
     assert not few.planted
     ran("report", out)
     assert page_of(out).xpath("//h1")[0].text_content().strip() == "No finding"
     log.write_bytes(log.read_bytes()[:100])
-    judged(few, out)
+    run_audit(few, out)
     ran("report", out)
     written = page_of(out)
     assert written.xpath("//h1")[0].text_content().strip() == "No finding, but not everything could be judged"
@@ -220,7 +220,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
 def test_an_audit_that_has_not_ended_is_not_told_as_whole(tmp_path: Path) -> None:
     few = fleet.write(tmp_path / "fleet", 3)
     out = tmp_path / "out"
-    judged(few, out, shard=(1, 1))
+    run_audit(few, out, shard=(1, 1))
     done = ran("report", out)
     assert "3 judged drives are not packed yet" in done.err
     assert "Not complete" in page_of(out).text_content()
@@ -237,7 +237,7 @@ def test_a_baseline_says_what_is_new(audited: Audited) -> None:
 
 
 @pytest.mark.slow
-def test_the_page_does_not_grow_with_the_drives(filled: lake.Lake, written: Any, tmp_path: Path) -> None:
+def test_the_page_does_not_grow_with_the_drives(filled: lake.Lake, fleet_html: Any, tmp_path: Path) -> None:
     more = lake.write(tmp_path / "more", 4 * filled.n_drives)
     ran("report", more.folder, "--by", "site", "--by", "vehicle")
     few, many = ((each.folder / "fleet.html").stat().st_size for each in (filled, more))
@@ -255,7 +255,7 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
 
 @pytest.mark.ci
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("--to", "xqar"), "an audit can be reported as html, markdown, junit, sarif"),
         (("--by", "sit"), "did you mean 'site'?"),
@@ -263,10 +263,10 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
         (("--baseline", "nowhere"), "no audit is here"),
     ],
 )
-def test_mistakes_are_told(filled: lake.Lake, words: tuple[str, ...], said: str) -> None:
+def test_mistakes_are_told(filled: lake.Lake, words: tuple[str, ...], message: str) -> None:
     done = ran("report", filled.folder, *words)
     assert done.code == 2
-    assert said in done.err
+    assert message in done.err
 
 
 def test_tags_are_of_audits_only(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ pytestmark = [pytest.mark.ci, pytest.mark.skipif(CHROMIUM is None, reason="chrom
 
 
 @pytest.fixture(scope="module", params=[1280, 400])
-def opened(
+def browser_page(
     request: pytest.FixtureRequest, filled: lake.Lake, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Page]:
     assert ran("report", filled.folder, "--by", "release", "--baseline", filled.folder).code == 0
@@ -27,40 +27,42 @@ def opened(
         yield shown
 
 
-def test_it_opens_without_complaints_and_asks_for_nothing(opened: Page) -> None:
-    assert opened.value("getComputedStyle(document.body).margin") == "0px", "the policy let our style in"
-    assert opened.value("document.querySelectorAll('.rate-bar').length") > 30
-    assert opened.complaints() == []
-    assert all(url.startswith(("file:", "data:")) for url in opened.requests())
+def test_it_opens_without_complaints_and_asks_for_nothing(browser_page: Page) -> None:
+    assert browser_page.value("getComputedStyle(document.body).margin") == "0px", "the policy let our style in"
+    assert browser_page.value("document.querySelectorAll('.rate-bar').length") > 30
+    assert browser_page.complaints() == []
+    assert all(url.startswith(("file:", "data:")) for url in browser_page.requests())
 
 
-def test_nothing_is_wider_than_the_window(opened: Page) -> None:
-    assert opened.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+def test_nothing_is_wider_than_the_window(browser_page: Page) -> None:
+    assert browser_page.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
 
 
-def test_no_text_runs_out_of_the_window_where_it_is_cut_off(opened: Page) -> None:
+def test_no_text_runs_out_of_the_window_where_it_is_cut_off(browser_page: Page) -> None:
     """The page clips what is wider than itself, so that its own width does not tell."""
     beyond = "e => e.getBoundingClientRect().right > innerWidth + 1"
     assert (
-        opened.value(f"[...document.querySelectorAll('.tied, .command, h1, p')].filter({beyond}).map(e => e.className)")
+        browser_page.value(
+            f"[...document.querySelectorAll('.tied, .command, h1, p')].filter({beyond}).map(e => e.className)"
+        )
         == []
     )
 
 
-def test_a_click_on_a_head_sorts_by_numbers(opened: Page) -> None:
+def test_a_click_on_a_head_sorts_by_numbers(browser_page: Page) -> None:
     column = "[...document.querySelectorAll('.rate-table tbody tr')].map(r => Number(r.cells[2].dataset.v))"
-    opened.value("document.querySelectorAll('.rate-table thead th button')[2].click()")
-    rising = opened.value(column)
+    browser_page.value("document.querySelectorAll('.rate-table thead th button')[2].click()")
+    rising = browser_page.value(column)
     assert rising == sorted(rising)
-    opened.value("document.querySelectorAll('.rate-table thead th button')[2].click()")
-    falling = opened.value(column)
+    browser_page.value("document.querySelectorAll('.rate-table thead th button')[2].click()")
+    falling = browser_page.value(column)
     assert falling == sorted(rising, reverse=True)
     assert falling[0] > 0
 
 
-def test_bars_lie_where_their_rates_are(opened: Page) -> None:
+def test_bars_lie_where_their_rates_are(browser_page: Page) -> None:
     """A higher rate lies further to the right."""
-    told = opened.value(
+    told = browser_page.value(
         "[...document.querySelectorAll('.rate-table tbody tr')].filter(r => r.querySelector('.rate'))"
         ".map(r => [Number(r.cells[3].dataset.v), r.querySelector('.rate').getBoundingClientRect().left])"
     )
@@ -68,51 +70,53 @@ def test_bars_lie_where_their_rates_are(opened: Page) -> None:
     assert [x for _, x in sorted(told)] == sorted(x for _, x in told)
 
 
-def test_every_column_of_the_rates_is_seen(opened: Page) -> None:
-    assert opened.value(
+def test_every_column_of_the_rates_is_seen(browser_page: Page) -> None:
+    assert browser_page.value(
         "[...document.querySelectorAll('.rate-table, .by-tag')].every(e => e.scrollWidth <= e.clientWidth)"
     )
 
 
-def test_rates_without_findings_are_folded(opened: Page) -> None:
+def test_rates_without_findings_are_folded(browser_page: Page) -> None:
     seen = "[...document.querySelectorAll('.rate-table .idle')].filter(e => e.offsetHeight).length"
-    assert opened.value("document.querySelectorAll('.rate-table .idle').length") > 10
-    assert opened.value(seen) == 0
-    opened.value("document.querySelector('.idle-switch summary').click()")
-    assert opened.value(seen) == opened.value("document.querySelectorAll('.rate-table .idle').length")
-    opened.value("document.querySelector('.idle-switch summary').click()")
+    assert browser_page.value("document.querySelectorAll('.rate-table .idle').length") > 10
+    assert browser_page.value(seen) == 0
+    browser_page.value("document.querySelector('.idle-switch summary').click()")
+    assert browser_page.value(seen) == browser_page.value("document.querySelectorAll('.rate-table .idle').length")
+    browser_page.value("document.querySelector('.idle-switch summary').click()")
 
 
-def test_no_list_of_the_page_is_a_box_that_scrolls(opened: Page) -> None:
+def test_no_list_of_the_page_is_a_box_that_scrolls(browser_page: Page) -> None:
     boxes = "e => /auto|scroll/.test(getComputedStyle(e).overflowY) && e.scrollHeight > e.clientHeight + 1"
-    assert opened.value(f"[...document.body.querySelectorAll('*')].filter({boxes}).length") == 0
+    assert browser_page.value(f"[...document.body.querySelectorAll('*')].filter({boxes}).length") == 0
 
 
-def test_the_worst_drives_stand_on_the_page_the_first_ten_of_any_order(opened: Page) -> None:
-    assert opened.value("getComputedStyle(document.querySelector('.worst-table')).overflow") == "visible"
-    assert opened.value(
+def test_the_worst_drives_stand_on_the_page_the_first_ten_of_any_order(browser_page: Page) -> None:
+    assert browser_page.value("getComputedStyle(document.querySelector('.worst-table')).overflow") == "visible"
+    assert browser_page.value(
         "document.querySelector('.worst-table table').getBoundingClientRect().right <= document.documentElement.clientWidth"
     )
     seen = "[...document.querySelectorAll('.worst-table tbody tr')].filter(e => e.offsetHeight).length"
-    assert opened.value(seen) == 10
-    opened.value("document.querySelectorAll('.worst-table thead th button')[4].click()")
-    assert opened.value(seen) == 10
-    opened.value("document.querySelector('.more-switch summary').click()")
-    assert opened.value(seen) == opened.value("document.querySelectorAll('.worst-table tbody tr').length") > 10
-    opened.value("document.querySelector('.more-switch summary').click()")
+    assert browser_page.value(seen) == 10
+    browser_page.value("document.querySelectorAll('.worst-table thead th button')[4].click()")
+    assert browser_page.value(seen) == 10
+    browser_page.value("document.querySelector('.more-switch summary').click()")
+    assert (
+        browser_page.value(seen) == browser_page.value("document.querySelectorAll('.worst-table tbody tr').length") > 10
+    )
+    browser_page.value("document.querySelector('.more-switch summary').click()")
 
 
-def test_folded_lists_are_open_on_paper_and_tables_are_not_cut(opened: Page) -> None:
+def test_folded_lists_are_open_on_paper_and_tables_are_not_cut(browser_page: Page) -> None:
     folds = "[...document.querySelectorAll('.on-paper')]"
-    opened.value(f"{folds}.forEach(e => {{ e.open = false; }})")
-    opened.value("dispatchEvent(new Event('beforeprint'))")
-    opened.call("Emulation.setEmulatedMedia", media="print")
-    assert opened.value(f"{folds}.length && {folds}.every(e => e.open)")
-    assert opened.value("getComputedStyle(document.querySelector('.by-tag')).display") == "block"
-    assert opened.value("getComputedStyle(document.querySelector('.by-tag table')).breakInside") == "avoid"
-    opened.call("Emulation.setEmulatedMedia", media="")
-    opened.value("dispatchEvent(new Event('afterprint'))")
-    assert opened.value(f"{folds}.every(e => !e.open)")
+    browser_page.value(f"{folds}.forEach(e => {{ e.open = false; }})")
+    browser_page.value("dispatchEvent(new Event('beforeprint'))")
+    browser_page.call("Emulation.setEmulatedMedia", media="print")
+    assert browser_page.value(f"{folds}.length && {folds}.every(e => e.open)")
+    assert browser_page.value("getComputedStyle(document.querySelector('.by-tag')).display") == "block"
+    assert browser_page.value("getComputedStyle(document.querySelector('.by-tag table')).breakInside") == "avoid"
+    browser_page.call("Emulation.setEmulatedMedia", media="")
+    browser_page.value("dispatchEvent(new Event('afterprint'))")
+    assert browser_page.value(f"{folds}.every(e => !e.open)")
 
 
 @pytest.fixture(scope="module", params=[1440, 390])

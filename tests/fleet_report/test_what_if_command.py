@@ -20,7 +20,7 @@ from tests.fleet_report.command import ran
 
 pytestmark = pytest.mark.ci
 
-OWN = invariant(
+SLOW_RULE = invariant(
     "SELECT drive_id, ego_id, t_ns, $factor * speed_mps AS observed, $limit AS required FROM ego_state",
     status="stable",
     tables="""[params.limit]
@@ -36,13 +36,13 @@ why = "ours"
 )
 
 
-class Own:
+class OwnRuleFleet:
     """A fleet that is audited by a rule of its own."""
 
     def __init__(self, home: Path) -> None:
         self.rules = home / "rules"
         (self.rules / "own").mkdir(parents=True)
-        (self.rules / "own" / "slow.sql").write_text(OWN, encoding="utf-8")
+        (self.rules / "own" / "slow.sql").write_text(SLOW_RULE, encoding="utf-8")
         self.fleet = fleet.write(home / "fleet", 12)
 
     def audit(self, out: Path, *params: str) -> Path:
@@ -55,13 +55,13 @@ class Own:
 
 
 @pytest.fixture(scope="module")
-def own(tmp_path_factory: pytest.TempPathFactory) -> Own:
-    return Own(tmp_path_factory.mktemp("own"))
+def own_rule_fleet(tmp_path_factory: pytest.TempPathFactory) -> OwnRuleFleet:
+    return OwnRuleFleet(tmp_path_factory.mktemp("own"))
 
 
 @pytest.fixture(scope="module")
-def judged(own: Own, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return own.audit(tmp_path_factory.mktemp("judged") / "audit")
+def audit_folder(own_rule_fleet: OwnRuleFleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return own_rule_fleet.audit(tmp_path_factory.mktemp("judged") / "audit")
 
 
 def by_release(out: Path) -> Counter[tuple[str, str]]:
@@ -71,20 +71,22 @@ def by_release(out: Path) -> Counter[tuple[str, str]]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("limit", ["11", "11.99", "12.05", "20"])
-def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, limit: str) -> None:
-    done = ran("what-if", judged, f"own.slow.limit={limit}", "--by", "release", "--format", "json")
+def test_it_is_what_another_audit_says(
+    own_rule_fleet: OwnRuleFleet, audit_folder: Path, tmp_path: Path, limit: str
+) -> None:
+    done = ran("what-if", audit_folder, f"own.slow.limit={limit}", "--by", "release", "--format", "json")
     told = json.loads(done.out)
     assert (done.code, told["needs_audit"], told["not_known"], told["was"]) == (0, None, 0, "30.0")
     becomes: Counter[tuple[str, str]] = Counter()
     for each in told["verdicts"]:
         becomes[each["tag_value"], each["becomes"]] += each["n"]
-    assert becomes == by_release(own.audit(tmp_path / "again", f"own.slow.limit={limit}"))
+    assert becomes == by_release(own_rule_fleet.audit(tmp_path / "again", f"own.slow.limit={limit}"))
     assert sum(becomes.values()) == 12
 
 
 @pytest.mark.slow
-def test_the_text_counts_flips_by_release(judged: Path) -> None:
-    done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
+def test_the_text_counts_flips_by_release(audit_folder: Path) -> None:
+    done = ran("what-if", audit_folder, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("verdicts that change:\n")
@@ -95,18 +97,20 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     lines = [line for line in which.splitlines() if line.startswith("  ")]
     assert len(lines) == 12
     assert all(line.endswith(".parquet: ego 0: pass -> fail") for line in lines)
-    flipped = json.loads(ran("what-if", judged, "own.slow.limit=11", "--format", "json").out)["flipped"]
+    flipped = json.loads(ran("what-if", audit_folder, "own.slow.limit=11", "--format", "json").out)["flipped"]
     assert [f"  {each['log']}: ego {each['ego_id']}: {each['was']} -> {each['becomes']}" for each in flipped] == lines
 
 
 @pytest.mark.slow
-def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own, tmp_path: Path) -> None:
-    manifest, logs = own.fleet.manifest, own.fleet.manifest.parent / "logs"
+def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(
+    own_rule_fleet: OwnRuleFleet, tmp_path: Path
+) -> None:
+    manifest, logs = own_rule_fleet.fleet.manifest, own_rule_fleet.fleet.manifest.parent / "logs"
     shutil.copy(logs / "drive-00000.parquet", logs / "copy.parquet")
     listed = manifest.read_text(encoding="utf-8")
     try:
         manifest.write_text(f'{listed}"logs/copy.parquet","v1","copied"\n', encoding="utf-8")
-        out = own.audit(tmp_path / "audit")
+        out = own_rule_fleet.audit(tmp_path / "audit")
     finally:
         manifest.write_text(listed, encoding="utf-8")
     done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
@@ -118,20 +122,20 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
     assert ran("what-if", out, "own.slow.limit=11").out.partition("\n")[2].startswith("12 of 12 verdicts")
 
 
-def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:
-    done = ran("what-if", judged, "own.slow.factor=2")
+def test_a_parameter_in_what_is_observed_needs_another_audit(audit_folder: Path) -> None:
+    done = ran("what-if", audit_folder, "own.slow.factor=2")
     assert done.code == 4
     assert "needs a new audit: factor is not only the required value" in done.out
     assert "drivelint audit SOURCE --param own.slow.factor=2 --out OTHER" in done.out
 
 
-def test_a_rule_that_is_not_as_it_was_needs_another_audit(own: Own, judged: Path) -> None:
-    file = own.rules / "own" / "slow.sql"
+def test_a_rule_that_is_not_as_it_was_needs_another_audit(own_rule_fleet: OwnRuleFleet, audit_folder: Path) -> None:
+    file = own_rule_fleet.rules / "own" / "slow.sql"
     before = file.read_text(encoding="utf-8")
     assert "$factor * speed_mps" in before
     file.write_text(before.replace("$factor * speed_mps", "2 * $factor * speed_mps"), encoding="utf-8")
     try:
-        done = ran("what-if", judged, "own.slow.limit=11")
+        done = ran("what-if", audit_folder, "own.slow.limit=11")
     finally:
         file.write_text(before, encoding="utf-8")
     assert done.code == 4
@@ -146,14 +150,14 @@ def test_where_only_a_bound_is_stored_it_says_so(filled: lake.Lake) -> None:
 
 
 @pytest.mark.parametrize(
-    ("setting", "said"),
+    ("setting", "message"),
     [
         ("own.slow.limit", "write RULE.PARAM=VALUE"),
         ("own.slow.lim=1", "has no parameter"),
         ("ukhc.overtake-zone.margin_s=1", "no verdicts of rule"),
     ],
 )
-def test_mistakes_are_told(judged: Path, setting: str, said: str) -> None:
-    done = ran("what-if", judged, setting)
+def test_mistakes_are_told(audit_folder: Path, setting: str, message: str) -> None:
+    done = ran("what-if", audit_folder, setting)
     assert done.code == 2
-    assert said in done.err
+    assert message in done.err

@@ -7,21 +7,21 @@ from typing import Any
 import pytest
 
 from tests.fleet.audits import ego_drive
-from tests.fleet_report.told import Told, touched, words, words_of
+from tests.fleet_report.fleet_page import FleetPage, contact, words, words_of
 
 pytestmark = pytest.mark.ci
 
 
-def told(*drives: tuple[str, int, dict[str, str]], km: float = 100.0) -> Told:
+def contacts_page(*drives: tuple[str, int, dict[str, str]], km: float = 100.0) -> FleetPage:
     """Return the page of drives with so many contacts and these tags."""
-    return Told(
+    return FleetPage(
         [ego_drive(name, km, tags=tags) for name, _, tags in drives],
         [row for name, n, _ in drives for row in words(name, "fail" if n else "pass")],
-        [touched(name, k) for name, n, _ in drives for k in range(n)],
+        [contact(name, k) for name, n, _ in drives for k in range(n)],
     )
 
 
-def line(of: Told) -> str:
+def line(of: FleetPage) -> str:
     (found,) = of.html.xpath("//header/p[contains(@class, 'worst-value')]")
     return words_of(found)
 
@@ -37,7 +37,7 @@ def test_the_worst_site_is_named_with_rates_and_intervals_of_all_sites() -> None
     from scipy.stats import binomtest
 
     sites = [("a", 30, "hull"), ("b", 2, "leeds"), ("c", 3, "york")]
-    page = told(*((name, n, {"site": site, "release": "v1"}) for name, n, site in sites))
+    page = contacts_page(*((name, n, {"site": site, "release": "v1"}) for name, n, site in sites))
     found = page.content.worst_value
     assert found is not None
     assert [(rate.tag_value, rate.findings) for rate in found.rates] == [("hull", 30), ("york", 3), ("leeds", 2)]
@@ -56,7 +56,7 @@ def test_the_worst_site_is_named_with_rates_and_intervals_of_all_sites() -> None
 
 
 def test_a_difference_that_chance_explains_is_no_headline() -> None:
-    page = told(("a", 3, {"site": "hull"}), ("b", 1, {"site": "york"}))
+    page = contacts_page(("a", 3, {"site": "hull"}), ("b", 1, {"site": "york"}))
     assert page.content.worst_value is not None
     assert not page.content.worst_value.is_significant
     assert not page.html.xpath("//p[contains(@class, 'worst-value')]")
@@ -68,7 +68,7 @@ def test_of_several_tags_the_one_that_differs_most_is_named() -> None:
         for site in ("hull", "york")
         for release in ("v1", "v2")
     ]
-    assert "at release v2: No collision, findings per 100 km: v2 20.0 " in line(told(*drives))
+    assert "at release v2: No collision, findings per 100 km: v2 20.0 " in line(contacts_page(*drives))
 
 
 @pytest.mark.parametrize(
@@ -82,11 +82,11 @@ def test_of_several_tags_the_one_that_differs_most_is_named() -> None:
     ids=["no tags", "one value", "no findings", "too many values"],
 )
 def test_without_values_to_compare_nothing_is_said(drives: list[Any]) -> None:
-    page = told(*drives)
+    page = contacts_page(*drives)
     assert page.content.worst_value is None
     assert not page.html.xpath("//p[contains(@class, 'worst-value')]")
 
 
 def test_a_tag_that_is_no_plain_word_is_quoted_in_the_option() -> None:
-    page = told(("a", 30, {"the site": "hull"}), ("b", 1, {"the site": "york"}))
+    page = contacts_page(("a", 30, {"the site": "hull"}), ("b", 1, {"the site": "york"}))
     assert "report --by 'the site'" in line(page)

@@ -29,7 +29,7 @@ def at(start: float, end: float | None = None, **over: Any) -> dict[str, Any]:
     return finding(**(base | times | {"x_m": 10.0 * start, "y_m": 0.0} | over))
 
 
-def said(verdict_: str, start: float = 0.0, end: float = 25.0, **over: Any) -> dict[str, Any]:
+def speed_verdict(verdict_: str, start: float = 0.0, end: float = 25.0, **over: Any) -> dict[str, Any]:
     """A verdict of the speed rule from `start` to `end` seconds into the drive."""
     times = {
         name: round((100 + s) * SECOND) for name, s in (("t_start_ns", start), ("t_end_ns", end), ("t_worst_ns", end))
@@ -39,7 +39,7 @@ def said(verdict_: str, start: float = 0.0, end: float = 25.0, **over: Any) -> d
 
 
 def run(findings: list[dict[str, Any]], *verdicts: dict[str, Any], **more: Any) -> Result:
-    told = list(verdicts) or [said("fail", n_expected=9, n_judged=9) if findings else said("pass")]
+    told = list(verdicts) or [speed_verdict("fail", n_expected=9, n_judged=9) if findings else speed_verdict("pass")]
     return result(told, findings, rules=more.pop("rules", RULES), **more)
 
 
@@ -74,7 +74,7 @@ def test_so_close_in_time_is_the_same(moved_s: float, same: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    ("moved", "same"),
+    ("columns", "same"),
     [
         ({"x_m": 84.9}, True),
         ({"x_m": 85.1}, False),
@@ -87,10 +87,10 @@ def test_so_close_in_time_is_the_same(moved_s: float, same: bool) -> None:
         ({"profile": "nominal"}, False),
     ],
 )
-def test_in_another_log_of_the_same_name_the_place_must_agree_too(moved: dict[str, Any], same: bool) -> None:
+def test_in_another_log_of_the_same_name_the_place_must_agree_too(columns: dict[str, Any], same: bool) -> None:
     base = run([at(8)])
     again = {"drive_id": "d1-again", "finding_id": "other"}
-    new = run([at(8, **(again | moved))], said("fail", **again_only(again)), drives=[again_drive()])
+    new = run([at(8, **(again | columns))], speed_verdict("fail", **again_only(again)), drives=[again_drive()])
     counted = diff.compare(base, new).counts()
     assert counted["new"] == (0 if same else 1)
     assert sum(counted[gone] for gone in ("fixed", *NOT_FIXED_WORDS)) == (0 if same else 1)
@@ -108,11 +108,15 @@ def test_in_another_log_a_long_stretch_is_the_same_by_its_time() -> None:
     """Its worst step may be anywhere in it."""
     there = {"drive_id": "d1-again", "x_m": 500.0}
     new = run(
-        [at(8.2, 18, t_worst_ns=118 * SECOND, **there)], said("fail", drive_id="d1-again"), drives=[again_drive()]
+        [at(8.2, 18, t_worst_ns=118 * SECOND, **there)],
+        speed_verdict("fail", drive_id="d1-again"),
+        drives=[again_drive()],
     )
     assert only(run([at(8, 18)]), new).standing == "changed"
     short = run(
-        [at(8.2, 12, t_worst_ns=112 * SECOND, **there)], said("fail", drive_id="d1-again"), drives=[again_drive()]
+        [at(8.2, 12, t_worst_ns=112 * SECOND, **there)],
+        speed_verdict("fail", drive_id="d1-again"),
+        drives=[again_drive()],
     )
     assert diff.compare(run([at(8, 18)]), short).counts()["new"] == 0, "a part of what was one"
 
@@ -120,7 +124,7 @@ def test_in_another_log_a_long_stretch_is_the_same_by_its_time() -> None:
 def test_times_are_those_since_the_log_began() -> None:
     late = drive("d1-again", file_name="d1.csv", sha256="ef" * 32, t_start_ns=900 * SECOND)
     times = dict.fromkeys(("t_start_ns", "t_end_ns", "t_worst_ns"), 908 * SECOND)
-    new = run([at(8, drive_id="d1-again", **times)], said("fail", drive_id="d1-again"), drives=[late])
+    new = run([at(8, drive_id="d1-again", **times)], speed_verdict("fail", drive_id="d1-again"), drives=[late])
     assert only(run([at(8)]), new).standing == "unchanged"
 
 
@@ -134,7 +138,7 @@ def test_the_same_log_under_another_name_is_the_same_drive() -> None:
 
 def test_a_file_stem_that_two_drives_have_names_neither() -> None:
     twins = [drive("d1-a", file_name="d1.csv"), drive("d1-b", file_name="d1.csv")]
-    new = run([at(8, drive_id="d1-a")], said("fail", drive_id="d1-a"), drives=twins)
+    new = run([at(8, drive_id="d1-a")], speed_verdict("fail", drive_id="d1-a"), drives=twins)
     found = diff.compare(run([at(8)]), new)
     assert [(e.standing, e.why) for e in found.entries] == [
         ("new", "the drive was not checked"), ("lost", "the drive was not checked"),
@@ -194,26 +198,26 @@ def test_stretches_that_become_one_are_all_accounted_for() -> None:
     assert {e.base_id for e in entries} == {f"d1-{SPEED}-None-0", "second"}
 
 
-OPEN = said("unknown", 5, 12, reason="the limit is not known")
+OPEN = speed_verdict("unknown", 5, 12, reason="the limit is not known")
 
 
 @pytest.mark.parametrize(
     ("new", "standing", "there", "why"),
     [
-        (run([], said("pass")), "fixed", "pass", "because pass"),
-        (run([], said("pass", 0, 4)), "fixed", "not_applicable", "The rule does not apply there."),
+        (run([], speed_verdict("pass")), "fixed", "pass", "because pass"),
+        (run([], speed_verdict("pass", 0, 4)), "fixed", "not_applicable", "The rule does not apply there."),
         (run([], verdict("not_applicable", rule_id=SPEED, profile=None, t_start_ns=None, t_end_ns=None, t_worst_ns=None,
                          t_ref_ns=None, object_id=None, reason="never")), "fixed", "not_applicable", "never"),
-        (run([], said("pass", 0, 4), OPEN), "unknown", "unknown", "the limit is not known"),
-        (run([], said("pass"), OPEN), "unknown", "unknown", "the limit is not known"),
-        (run([], said("pass"), said("unknown", 15, 20)), "fixed", "pass", "because pass"),
-        (run([], said("error", t_start_ns=None, t_end_ns=None, t_worst_ns=None)), "unknown", "error", "because error"),
-        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "the rule is kept at this time, but"),
-        (run([at(20)], said("fail", n_expected=9, n_judged=7)), "unknown", "unknown", "2 of 9 steps were not judged"),
-        (run([], said("pass"), rules=RULES[:1]), "lost", "none", "the rule was not run"),
-        (run([], said("pass", ego_id="2")), "lost", "none", "ego 1 was not judged"),
+        (run([], speed_verdict("pass", 0, 4), OPEN), "unknown", "unknown", "the limit is not known"),
+        (run([], speed_verdict("pass"), OPEN), "unknown", "unknown", "the limit is not known"),
+        (run([], speed_verdict("pass"), speed_verdict("unknown", 15, 20)), "fixed", "pass", "because pass"),
+        (run([], speed_verdict("error", t_start_ns=None, t_end_ns=None, t_worst_ns=None)), "unknown", "error", "because error"),
+        (run([at(20)], speed_verdict("fail", n_expected=9, n_judged=9)), "fixed", "pass", "the rule is kept at this time, but"),
+        (run([at(20)], speed_verdict("fail", n_expected=9, n_judged=7)), "unknown", "unknown", "2 of 9 steps were not judged"),
+        (run([], speed_verdict("pass"), rules=RULES[:1]), "lost", "none", "the rule was not run"),
+        (run([], speed_verdict("pass", ego_id="2")), "lost", "none", "ego 1 was not judged"),
         (run([], verdict("pass")), "lost", "none", "the rule has no verdict"),
-        (run([], said("pass"), drives=[drive(duration_s=5.0)]), "lost", "none", "the log ends before the finding"),
+        (run([], speed_verdict("pass"), drives=[drive(duration_s=5.0)]), "lost", "none", "the log ends before the finding"),
         (run([], drives=[drive(status="not_judged", status_reason="no ego")]), "unknown", "unknown", "no ego"),
         (run([], drives=[drive("d2")]), "lost", "none", "the drive was not checked"),
     ],
@@ -260,9 +264,12 @@ def test_a_changed_rule_is_named_as_a_cause() -> None:
 
 
 def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
-    base = run([], said("pass"), said("unknown", 1, 2, occurrence=1, reason="dark"))
+    base = run([], speed_verdict("pass"), speed_verdict("unknown", 1, 2, occurrence=1, reason="dark"))
     new = run(
-        [], said("unknown", reason="fog"), said("unknown", 1, 2, reason="fog"), said("unknown", 3, 4, reason="dark")
+        [],
+        speed_verdict("unknown", reason="fog"),
+        speed_verdict("unknown", 1, 2, reason="fog"),
+        speed_verdict("unknown", 3, 4, reason="dark"),
     )
     (opened,) = diff.compare(base, new).new_unknowns
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
@@ -324,13 +331,13 @@ def test_text_says_what_is_not_fixed() -> None:
 def test_every_finding_of_both_is_one_entry(
     base: list[tuple[int, int, str]], new: list[tuple[int, int, str]], same_log: bool
 ) -> None:
-    def made(rows: list[tuple[int, int, str]], sha: str) -> Result:
+    def run_with_findings(rows: list[tuple[int, int, str]], sha: str) -> Result:
         found = [
             at(s, min(s + n, 25), object_id=who, finding_id=f"f{i}") for i, (s, n, who) in enumerate(sorted(set(rows)))
         ]
         return run(found, drives=[drive(sha256=sha)])
 
-    a, b = made(base, "aa"), made(new, "aa" if same_log else "bb")
+    a, b = run_with_findings(base, "aa"), run_with_findings(new, "aa" if same_log else "bb")
     found = diff.compare(a, b)
     ours = [e.finding_id for e in found.entries if e.standing in {"new", "changed", "unchanged"}]
     assert set(ours) == set(b.findings["finding_id"].to_pylist())

@@ -22,7 +22,7 @@ TODAY = date(2026, 11, 20)
 WHOLE = 'rule = "ukhc.*"\nreason = "ticket 17"\nowner = "jo"\nexpires = 2027-03-31\n'
 
 
-def written(tmp_path: Path, *tables: str, name: str = "w.toml") -> Path:
+def waiver_file(tmp_path: Path, *tables: str, name: str = "w.toml") -> Path:
     file = tmp_path / name
     file.write_text("".join(f"[[waiver]]\n{table}\n" for table in tables), encoding="utf-8")
     return file
@@ -34,7 +34,7 @@ def waiver(**over: Any) -> Waiver:
 
 def test_a_waiver_is_read_with_its_place(tmp_path: Path) -> None:
     more = 'drive = "d*"\nego = "1"\nobject = "3"\nprofile = "nominal"\nfrom_s = 7\nto_s = 9.5\n'
-    file = written(tmp_path, WHOLE, WHOLE.replace("2027-03-31", '"2027-04-01"') + more)
+    file = waiver_file(tmp_path, WHOLE, WHOLE.replace("2027-03-31", '"2027-04-01"') + more)
     first, second = waivers.read(file)
     assert first == Waiver(f"{file}:1", "ukhc.*", "ticket 17", "jo", "2027-03-31")
     assert (second.where, second.expires) == (f"{file}:7", "2027-04-01")
@@ -97,8 +97,8 @@ def test_beside_settings_other_keys_are_not_its_business(tmp_path: Path) -> None
 ROW = finding()  # drive d1 (d1.csv), ego 1, object 3, profile nominal, at 8 s
 
 
-def waived(*given: Waiver, row: dict[str, Any] = ROW, today: date = TODAY) -> tuple[list[str], bool]:
-    stated, found = waivers.states_and_matches(given, result([verdict("fail")], [row]), today)
+def waived(*given_waivers: Waiver, row: dict[str, Any] = ROW, today: date = TODAY) -> tuple[list[str], bool]:
+    stated, found = waivers.states_and_matches(given_waivers, result([verdict("fail")], [row]), today)
     return [each.state for each in stated], row["finding_id"] in found
 
 
@@ -150,8 +150,8 @@ def test_of_two_waivers_the_first_that_counts_waives_and_none_is_unmatched() -> 
     assert found == {ROW["finding_id"]: 1}
 
 
-def gated(*given: Waiver, rows: list[dict[str, Any]], **more: Any) -> Result:
-    return GateInputs(TODAY, waivers=given).apply_to(result([verdict("fail")], rows, **more))
+def gated(*given_waivers: Waiver, rows: list[dict[str, Any]], **more: Any) -> Result:
+    return GateInputs(TODAY, waivers=given_waivers).apply_to(result([verdict("fail")], rows, **more))
 
 
 def test_a_waived_finding_is_shown_and_does_not_gate() -> None:
@@ -176,7 +176,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rule_id", "said"),
+    ("rule_id", "message"),
     [
         ("ukhc.r162.safe-distance-ahed", "no rule has this id; did you mean 'ukhc.r162.safe-distance-ahead'?"),
         ("ukhc.no-colision", "no rule has this id; did you mean 'ukhc.no-collision'?"),
@@ -184,11 +184,11 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     ],
 )
 @pytest.mark.parametrize("expires", ["2026-11-19", "2027-11-19"])
-def test_a_waiver_for_a_rule_that_does_not_exist_says_so(rule_id: str, said: str, expires: str) -> None:
+def test_a_waiver_for_a_rule_that_does_not_exist_says_so(rule_id: str, message: str, expires: str) -> None:
     run = gated(waiver(rule=rule_id, expires=expires), rows=[ROW])
     assert run.gate is not None
     (line,) = descriptions.waiver_warnings(run.gate)
-    assert said in line
+    assert message in line
     assert "no finding" not in line
 
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 MARGIN = 1e-6
 
 
-def checked(out: Path, *logs: Path, **options: Any) -> Result:
+def check_result(out: Path, *logs: Path, **options: Any) -> Result:
     result = run_check(
         CheckOptions(tuple(map(str, logs)), rules=("ukhc",), out=out, annotate=False, robustness=False, **options),
         Silent(),
@@ -54,12 +54,12 @@ def judged_alone(path: Path, rule_id: str) -> list[dict[str, Any]]:
     return findings(run_check(CheckOptions((str(path),), rules=(rule_id,), robustness=False), Silent()))
 
 
-def same(found: list[dict[str, Any]], wanted: dict[str, Any]) -> bool:
+def same(rows: list[dict[str, Any]], finding: dict[str, Any]) -> bool:
     keys = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
     return any(
-        all(row[key] == wanted[key] for key in keys)
-        and (row["margin"] == wanted["margin"] or abs(row["margin"] - wanted["margin"]) < MARGIN)
-        for row in found
+        all(row[key] == finding[key] for key in keys)
+        and (row["margin"] == finding["margin"] or abs(row["margin"] - finding["margin"]) < MARGIN)
+        for row in rows
     )
 
 
@@ -75,7 +75,7 @@ def worst_per_rule(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 def test_demo_findings_come_again(tmp_path: Path) -> None:
     files = {path.name: path for path in demo.write(tmp_path / "demo")}
     log = files["collision-25mph.mcap"]
-    result = checked(tmp_path / "out", log, map=files["road.xodr"])
+    result = check_result(tmp_path / "out", log, map=files["road.xodr"])
     rows = worst_per_rule([row for row in findings(result) if row["severity"] == "critical"])
     assert len(rows) >= 3
     for n, row in enumerate(rows):
@@ -89,7 +89,7 @@ def test_demo_findings_come_again(tmp_path: Path) -> None:
 def test_case_study_findings_come_again(tmp_path: Path, to: Literal["mcap", "parquet"]) -> None:
     log = shared("overtake_case_study/near_miss.csv")
     road = shared("overtake_case_study/t_junction.xodr")
-    result = checked(tmp_path / "out", log, map=road, mapping="carla-testbench")
+    result = check_result(tmp_path / "out", log, map=road, mapping="carla-testbench")
     row = next(row for row in findings(result) if row["unit"] == "m/s2")  # the touch that no box shows
     path = cut(log, tmp_path / "out", tmp_path / "clip", row, to)
     assert same(judged_alone(path, row["rule_id"]), row)
@@ -104,7 +104,7 @@ def test_case_study_findings_come_again(tmp_path: Path, to: Literal["mcap", "par
 def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An overtake that began before the clip is none: a span too short gives way to a longer one."""
     log, out = OVERTAKE / "near_miss.csv", tmp_path / "out"
-    result = checked(out, log, map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"))
+    result = check_result(out, log, map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"))
     row = next(row for row in findings(result) if row["rule_id"].endswith("safe-distance-ahead"))
     spans = ((0, 0.1), (5, 5))
     monkeypatch.setattr(clip, "TRIED_PADDINGS_S", spans)
@@ -185,9 +185,9 @@ def test_a_clip_names_the_log_that_it_was_cut_from(
 @pytest.mark.slow
 def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_frame(tmp_path: Path) -> None:
     log = shared("overtake_case_study/collision.csv")
-    result = checked(tmp_path / "log", log, map=shared("overtake_case_study/t_junction.xodr"))
+    result = check_result(tmp_path / "log", log, map=shared("overtake_case_study/t_junction.xodr"))
     row = next(row for row in findings(result) if row["unit"] == "m/s2")
-    again = checked(tmp_path / "alone", cut(log, tmp_path / "log", tmp_path / "clip", row))
+    again = check_result(tmp_path / "alone", cut(log, tmp_path / "log", tmp_path / "clip", row))
     (own,) = [each for each in findings(again) if each["unit"] == "m/s2"]
     told = [
         template_values(judge_parties_again(IncidentRequest(name["finding_id"], tmp_path / folder)))

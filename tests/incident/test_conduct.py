@@ -35,20 +35,20 @@ RULES: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-def row(rule: str, verdict: str = "pass", **said: Any) -> dict[str, Any]:
+def row(rule: str, verdict: str = "pass", **over: Any) -> dict[str, Any]:
     values: dict[str, Any] = {
         "t_start_ns": SPAN[0], "t_end_ns": SPAN[1], "t_worst_ns": 2 * S, "observed": 1.0, "required": 2.0, "margin": 1.0, "profile": None,
         "object_id": None, "near_miss": False, "finding_ids": [], "reason": "", "reason_code": "kept", "cause_code": None,
     }  # fmt: skip
-    return {**values, "rule_id": rule, "verdict": verdict, "unit": RULES[rule]["unit"], **said}
+    return {**values, "rule_id": rule, "verdict": verdict, "unit": RULES[rule]["unit"], **over}
 
 
-def finding(rule: str, copies: tuple[int, int] | None, **said: Any) -> dict[str, Any]:
+def finding(rule: str, copies: tuple[int, int] | None, **over: Any) -> dict[str, Any]:
     n = dict(zip(("n_stays", "n_copies"), copies or (None, None), strict=True))
-    return {**row(rule, "fail", margin=-1.0, finding_id="f", drive_id="d", ego_id="ego", **said), **n}
+    return {**row(rule, "fail", margin=-1.0, finding_id="f", drive_id="d", ego_id="ego", **over), **n}
 
 
-def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
+def conduct(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
     found = conduct_texts_and_counts(verdicts, findings, RULES, SPAN, 0, is_about_contact=touched)
     fit_conduct_lists_and_return_further_pages([found], 0, 0)
     return found
@@ -58,7 +58,7 @@ def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touc
 def test_no_rule_of_contacts_is_kept_under_a_contact(*, touched: bool) -> None:
     """Another finding of the party is a contact, or the sheet is about one."""
     hit = [] if touched else [finding("impact", (32, 32))]
-    found = told([row("boxes", object_id="3", observed=0.14, required=0.0), row("limit")], hit, touched=touched)
+    found = conduct([row("boxes", object_id="3", observed=0.14, required=0.0), row("limit")], hit, touched=touched)
     assert not any("distance between" in line or "No collision" in line for line in found["kept"].texts)
     assert found["beside"] == ["distance between the two with 3: 0.14 m (more than 0.00 m)"]
     assert found["n"]["kept"] == 1
@@ -66,15 +66,17 @@ def test_no_rule_of_contacts_is_kept_under_a_contact(*, touched: bool) -> None:
 
 
 def test_a_rule_with_excuses_is_not_said_to_be_kept() -> None:
-    found = told([row("lane", observed=0.0, required=5.0)], [])
+    found = conduct([row("lane", observed=0.0, required=5.0)], [])
     assert found["kept"].texts == []
     assert found["excused"].texts == ["\u201cWithin its lane\u201d"]  # and not that it was astride for 0 s
 
 
 def test_kept_is_named_by_what_was_measured_and_when() -> None:
     part = row("limit", observed=5.9, required=18.3, t_end_ns=7 * S)
-    assert told([row("limit", observed=5.9, required=18.3)], [])["kept"].texts == ["speed 5.90 m/s (at most 18.30 m/s)"]
-    assert told([part], [])["kept"].texts == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    assert conduct([row("limit", observed=5.9, required=18.3)], [])["kept"].texts == [
+        "speed 5.90 m/s (at most 18.30 m/s)"
+    ]
+    assert conduct([part], [])["kept"].texts == ["speed 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
     limit = {
         **RULES["limit"],
         "params": [{"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}],
@@ -82,8 +84,8 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
     (line,) = conduct_texts_and_counts([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
     assert line == "speed 5.90 m/s (at most 18.30 m/s, including 0.45 m/s tolerance; 0.00 to 7.00 s)"
     bound = {**part, "cause_code": "lower_bound"}
-    assert told([bound], [])["kept"].texts == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
-    assert told([{**part, "near_miss": True}], [])["kept"].texts[0].endswith("; near miss)")
+    assert conduct([bound], [])["kept"].texts == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
+    assert conduct([{**part, "near_miss": True}], [])["kept"].texts[0].endswith("; near miss)")
 
 
 def test_how_sure_several_findings_are() -> None:
@@ -91,16 +93,16 @@ def test_how_sure_several_findings_are() -> None:
         finding("impact", copies, t_start_ns=s * S, t_end_ns=s * S)
         for s, copies in enumerate([(32, 32), (49, 100), (50, 100)])
     ]
-    assert told([], found)["broken"].texts[0].endswith("(3 findings: 1 sure, 2 possible)")
-    assert told([], found[:1])["broken"].texts[0].endswith("; sure, 32 of 32")
-    assert told([], [finding("impact", None)])["broken"].texts[0].endswith("; certainty not examined")
+    assert conduct([], found)["broken"].texts[0].endswith("(3 findings: 1 sure, 2 possible)")
+    assert conduct([], found[:1])["broken"].texts[0].endswith("; sure, 32 of 32")
+    assert conduct([], [finding("impact", None)])["broken"].texts[0].endswith("; certainty not examined")
 
 
 def test_begin_and_worst_time() -> None:
     lasting = finding("impact", None, t_start_ns=9 * S, t_end_ns=11 * S, t_worst_ns=10 * S)
-    assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in told([], [lasting])["broken"].texts[0]
+    assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in conduct([], [lasting])["broken"].texts[0]
     once = finding("ahead", None, t_start_ns=7 * S, t_end_ns=7 * S, t_worst_ns=7 * S)
-    assert ": for the manoeuvre at 7.00 s, " in told([], [once])["broken"].texts[0]
+    assert ": for the manoeuvre at 7.00 s, " in conduct([], [once])["broken"].texts[0]
 
 
 def test_every_profile_is_told_the_mildest_first_and_one_overtake_counts_once() -> None:
@@ -109,13 +111,13 @@ def test_every_profile_is_told_the_mildest_first_and_one_overtake_counts_once() 
     found = [{**each, "margin": each["observed"] - each["required"]} for each in found]
     assert (
         "45.59 m, must be more than 51.19 m (planned as aggressive), 74.92 m (planned as nominal), "
-        "112.57 m (planned as relaxed); sure, 32 of 32" in told([], found)["broken"].texts[0]
+        "112.57 m (planned as relaxed); sure, 32 of 32" in conduct([], found)["broken"].texts[0]
     )
 
 
 def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
     reason = "the log does not record when the headlights are on: record either their signal or the event headlights, on and off"
-    found = told([row("lamps", "unknown", reason=reason, reason_code="missing", finding_ids=None)], [])
+    found = conduct([row("lamps", "unknown", reason=reason, reason_code="missing", finding_ids=None)], [])
     assert found["reasons"].texts == [
         "\u201cHeadlights at night\u201d: The log does not record when the headlights are on"
     ]
@@ -193,7 +195,7 @@ def test_one_reason_in_words_is_told_once_whatever_its_codes() -> None:
         row(rule, "unknown", reason_code=code, reason=f"the log ends: {advice}")
         for rule, code, advice in (("boxes", "a", "record it until it is back"), ("limit", "b", "see what it did"))
     ]
-    found = told(rows, [])
+    found = conduct(rows, [])
     assert found["reasons"].texts == [
         f"\u201c{RULES['boxes']['title']}\u201d, \u201c{RULES['limit']['title']}\u201d: The log ends"
     ]
@@ -202,5 +204,5 @@ def test_one_reason_in_words_is_told_once_whatever_its_codes() -> None:
 def test_why_a_contact_is_not_decided_is_told_first() -> None:
     """A page that has room for one reason must not leave that one out."""
     rows = [row(rule, "unknown", reason_code="x", reason="no lights") for rule in ("limit", "lane")]
-    found = told([*rows, row("boxes", "unknown", reason_code="y", reason="the boxes are apart")], [])
+    found = conduct([*rows, row("boxes", "unknown", reason_code="y", reason="the boxes are apart")], [])
     assert found["reasons"].texts[0].startswith(f"\u201c{RULES['boxes']['title']}\u201d")

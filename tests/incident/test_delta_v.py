@@ -67,17 +67,17 @@ def test_a_recording_that_ends_in_the_impact_gives_a_bound() -> None:
 def test_words(case_of: CaseOf) -> None:
     trace, motion = case_of("no-collision@collision").drive.trace, struck((-1.0, 0.0), (0.5, 0.0))
 
-    def told(check: str, actor_id: str | None) -> str:
+    def text(check: str, actor_id: str | None) -> str:
         mine = with_quality_finding(trace, QualityFinding(check, "warning", "said", actor_id=actor_id))
         return delta_v_text(motion, 0, BEFORE, mine, "ego")
 
     assert (
-        told("gap", None)
+        text("gap", None)
         == "6.0 m/s (22 km/h, 13 mph), from \u22120.10 s to 0 s: 5.0 to 1.0 m/s, direction changed by 180\u00b0"
     )
-    assert told("velocity_filtered", "ego").startswith("not known: the log has only a mean")
-    assert told("velocity_filtered", "somebody else") == told("gap", None)
-    assert told("velocity_derived", None).endswith("; velocities computed from positions")
+    assert text("velocity_filtered", "ego").startswith("not known: the log has only a mean")
+    assert text("velocity_filtered", "somebody else") == text("gap", None)
+    assert text("velocity_derived", None).endswith("; velocities computed from positions")
     assert delta_v_text(motion, 0, None, trace, "ego") == ""
     short = delta_v_text(struck((0.0, 0.0), n=BEFORE + 2), 0, BEFORE, trace, "ego")
     assert short.startswith("at least 5.0 m/s")
@@ -87,7 +87,7 @@ def test_words(case_of: CaseOf) -> None:
 
 @pytest.mark.ci
 @pytest.mark.parametrize(
-    ("after", "told"),
+    ("after", "ending"),
     [
         ((3.0, 4.0), ": 5.0 to 5.0 m/s, direction changed by 53\u00b0, which may be steering"),
         ((1.0, 1.0), ": 5.0 to 1.4 m/s, direction changed by 45\u00b0"),
@@ -95,7 +95,7 @@ def test_words(case_of: CaseOf) -> None:
         ((4.8, 0.2), ""),
     ],
 )
-def test_a_change_of_direction_alone_may_be_steering(case_of: CaseOf, after: tuple[float, float], told: str) -> None:
+def test_a_change_of_direction_alone_may_be_steering(case_of: CaseOf, after: tuple[float, float], ending: str) -> None:
     trace = case_of("no-collision@collision").drive.trace
     said = delta_v_text(struck(after), 0, BEFORE, trace, "ego")
-    assert said.endswith(f"to 0 s{told}")
+    assert said.endswith(f"to 0 s{ending}")

@@ -32,8 +32,8 @@ def tables(**rows: list[dict[str, Any]]) -> dict[str, pa.Table]:
     }
 
 
-def absent(given: dict[str, pa.Table], log: dict[str, Any]) -> set[str]:
-    return {name for source in data_elements_by_presence(given, log, "ego") for name in source.absent}
+def absent(log_tables: dict[str, pa.Table], log: dict[str, Any]) -> set[str]:
+    return {name for source in data_elements_by_presence(log_tables, log, "ego") for name in source.absent}
 
 
 def test_every_place_exists() -> None:

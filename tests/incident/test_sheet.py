@@ -162,8 +162,8 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     stable = case.result.rules["rule_id"].to_pylist()
 
-    def selected(asked_for: list[str], named: Sequence[str] = ()) -> list[str]:
-        words = shlex.split(reproducing_commands(case.run_options, case.finding, asked_for, named)[0])
+    def selected(asked_for: list[str], named_rule_ids: Sequence[str] = ()) -> list[str]:
+        words = shlex.split(reproducing_commands(case.run_options, case.finding, asked_for, named_rule_ids)[0])
         return [word for i, word in enumerate(words) if {"--rules", "--ignore"} & {word, words[i - 1]}]
 
     ukhc = {rule.id for rule in catalogue.load_rules().values() if rule.pack == "ukhc" and rule.status == "stable"}
@@ -264,8 +264,8 @@ def test_required_distance_is_drawn(case_of: CaseOf) -> None:
 
 
 @pytest.mark.ci
-@pytest.mark.parametrize(("stays", "said"), [(None, "not examined"), (53, "<b>possible</b>"), (99, "<b>sure</b>")])
-def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> None:
+@pytest.mark.parametrize(("stays", "certainty"), [(None, "not examined"), (53, "<b>possible</b>"), (99, "<b>sure</b>")])
+def test_certainty_is_told(case_of: CaseOf, stays: int | None, certainty: str) -> None:
     case = case_of("no-collision@collision")
     row = {**case.finding.row, "n_copies": None if stays is None else 100, "n_stays": stays}
     alone = replace(case.result, findings=case.result.findings.slice(0, 0))
@@ -275,7 +275,7 @@ def test_certainty_is_told(case_of: CaseOf, stays: int | None, said: str) -> Non
     assert "A and B collided head-on" in surest
     case = replace(case, result=alone)
     page = sheet_html(replace(case, finding=replace(case.finding, row=row))).decode()
-    assert said in page
+    assert certainty in page
     assert (f"{stays} of 100 copies" in page) is (stays is not None)
     assert ("Possible contact" in page) is (stays == 53)
     assert ("A and B may have collided head-on" in page) is (stays == 53)

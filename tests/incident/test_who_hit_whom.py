@@ -101,7 +101,7 @@ def test_parties_of_two_kinds_are_named_by_their_kinds() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("the ego and 3 ran into each other", "A and B ran into each other"),
         ("object 3 came 0.3 s after the ego", "B came 0.3 s after A"),
@@ -113,8 +113,8 @@ def test_parties_of_two_kinds_are_named_by_their_kinds() -> None:
         ),
     ],
 )
-def test_the_other_party_has_one_name(text: str, said: str) -> None:
-    assert text_with_party_names(text, "A", ("3", "B")) == said
+def test_the_other_party_has_one_name(text: str, expected: str) -> None:
+    assert text_with_party_names(text, "A", ("3", "B")) == expected
 
 
 @pytest.mark.ci
@@ -138,11 +138,13 @@ def test_the_side_of_the_road_is_told_whoever_states_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"), [("esmini", "esmini"), ("carla-testbench", "CARLA"), ("sumo-fcd", "SUMO"), ("osi-mcap", "")]
+    ("kind", "simulator"), [("esmini", "esmini"), ("carla-testbench", "CARLA"), ("sumo-fcd", "SUMO"), ("osi-mcap", "")]
 )
-def test_a_simulator_is_named(kind: str, said: str) -> None:
+def test_a_simulator_is_named(kind: str, simulator: str) -> None:
     told = simulator_text({"format": kind})
-    assert told == (f"The log has the format of the simulator {said}: probably a simulated drive" if said else "")
+    assert told == (
+        f"The log has the format of the simulator {simulator}: probably a simulated drive" if simulator else ""
+    )
 
 
 @pytest.mark.ci

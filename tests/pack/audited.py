@@ -16,7 +16,7 @@ from drivelint.fleet_report.audit_views import open_audit_in_evidence_pack
 from drivelint.pack.audits.statement import in_toto_statement
 from drivelint.pack.signature import private_key, signed_envelope
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 from tests.pack.packed import STATEMENT, change_evidence, make_key, make_pack, rehash
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def write_audit(folder: Path) -> PackedAudit:
         times = rows["t_ns"].to_pylist()
         pq.write_table(rows.set_column(3, "t_ns", pa.array([*times[:-1], None], pa.int64())), logs / name)
     (logs / REFUSED).write_bytes(b"<html>not found</html>")
-    judged(drives, folder / "audit", InThisProcess(poison=QUARANTINED))
+    run_audit(drives, folder / "audit", InThisProcess(poison=QUARANTINED))
     key, public = make_key(folder, "ours")
     pack = make_pack(folder / "audit", folder / "pack", key, with_inputs=True)
     return PackedAudit(drives, folder / "audit", pack, key, public, make_key(folder, "theirs")[0])
@@ -69,9 +69,9 @@ def keep_rows(pack: Path, table: str, keep: Callable[[dict[str, Any]], bool]) ->
 
 
 def change_json(path: Path, change: Callable[[dict[str, Any]], None]) -> None:
-    told = json.loads(path.read_bytes())
-    change(told)
-    path.write_text(json.dumps(told, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+    content = json.loads(path.read_bytes())
+    change(content)
+    path.write_text(json.dumps(content, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
 
 def follow_rows(pack: Path) -> None:
@@ -93,8 +93,8 @@ def follow_tables(pack: Path) -> None:
     """Let the summary and the hashes in `evidence.json` say what the changed tables say."""
     with open_audit_in_evidence_pack(pack / AUDIT) as (con, _):
         counted = summary_of_all_drives(con, 0)
-    change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.file_content()))
-    change_evidence(pack, lambda _told: None)
+    change_json(pack / AUDIT / "summary.json", lambda summary: summary.update(counted.file_content()))
+    change_evidence(pack, lambda _evidence: None)
 
 
 def sign_anew(pack: Path, key: Path) -> None:

@@ -78,30 +78,30 @@ def rewrite_reports(pack: Path) -> None:
     for name, render in REPORT_FORMATS.values():
         if (folder / name).is_file():
             (folder / name).write_bytes(render(result))
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
 
 
 def change_evidence(pack: Path, change: Callable[[dict[str, Any]], None]) -> None:
     """Change what `evidence.json` says, after its hashes of the outputs are right."""
     file = pack / "data/evidence.json"
-    told = json.loads(file.read_text("utf-8"))
-    told["outputs"] = {name: hashlib.sha256((pack / name).read_bytes()).hexdigest() for name in told["outputs"]}
-    change(told)
-    file.write_text(json.dumps(told, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    evidence = json.loads(file.read_text("utf-8"))
+    evidence["outputs"] = {name: hashlib.sha256((pack / name).read_bytes()).hexdigest() for name in evidence["outputs"]}
+    change(evidence)
+    file.write_text(json.dumps(evidence, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def statement_of(pack: Path) -> dict[str, Any]:
     sealed = json.loads((pack / STATEMENT).read_bytes())
-    told: dict[str, Any] = json.loads(base64.b64decode(sealed["payload"]))
-    return told
+    statement: dict[str, Any] = json.loads(base64.b64decode(sealed["payload"]))
+    return statement
 
 
 def restate(pack: Path, change: Callable[[dict[str, Any]], None], key: Path | None = None) -> None:
     """Change the statement, sign it with a key (None: the old signature stays) and hash the tag files anew."""
     sealed = json.loads((pack / STATEMENT).read_bytes())
-    told = statement_of(pack)
-    change(told)
-    payload = (json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode()
+    statement = statement_of(pack)
+    change(statement)
+    payload = (json.dumps(statement, indent=2, ensure_ascii=False) + "\n").encode()
     sealed["payload"] = base64.b64encode(payload).decode()
     if key is not None:
         private = serialization.load_pem_private_key(key.read_bytes(), None)
@@ -121,8 +121,8 @@ def sign_anew(pack: Path, key: Path) -> None:
     """Let everything follow from the changed tables, rules and `evidence.json`, and sign it: what the owner of a key can forge."""
     rehash(pack)
     evidence = json.loads((pack / "data/evidence.json").read_text("utf-8"))
-    said = in_toto_statement(pack, load_result(pack / "data/result"), packed_summary(pack), evidence)
-    (pack / STATEMENT).write_bytes(signed_envelope(said, private_key(key)))
+    statement = in_toto_statement(pack, load_result(pack / "data/result"), packed_summary(pack), evidence)
+    (pack / STATEMENT).write_bytes(signed_envelope(statement, private_key(key)))
     rehash(pack, payload=False)
 
 
@@ -130,12 +130,12 @@ def reseal(pack: Path, key: Path, change: Callable[[dict[str, Any]], None] = lam
     """Hash and sign a changed pack anew, as whoever has the key can."""
     rehash(pack)
 
-    def sealed(told: dict[str, Any]) -> None:
-        for each in told["predicate"]["drivelint_pack"]:
+    def hash_and_change(statement: dict[str, Any]) -> None:
+        for each in statement["predicate"]["drivelint_pack"]:
             each["digest"]["sha256"] = hashlib.sha256((pack / each["name"]).read_bytes()).hexdigest()
-        change(told)
+        change(statement)
 
-    restate(pack, sealed, key)
+    restate(pack, hash_and_change, key)
 
 
 def change_byte(path: Path) -> None:
@@ -232,5 +232,5 @@ def numbers_without_drivelint(pack: Path, inner: str = "data/findings") -> dict[
         check=False, capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    told: dict[str, list[dict[str, Any]]] = json.loads(done.stdout)
-    return told
+    numbers: dict[str, list[dict[str, Any]]] = json.loads(done.stdout)
+    return numbers

@@ -71,8 +71,8 @@ def copied(packed: PackedAudit, tmp_path: Path) -> Path:
 
 
 def evidence_of(pack: Path) -> dict[str, Any]:
-    told: dict[str, Any] = json.loads((pack / "data/evidence.json").read_text("utf-8"))
-    return told
+    evidence: dict[str, Any] = json.loads((pack / "data/evidence.json").read_text("utf-8"))
+    return evidence
 
 
 def rows_of(pack: Path, table: str) -> list[dict[str, Any]]:
@@ -205,7 +205,7 @@ def test_an_audit_that_has_not_ended_is_not_packed(packed: PackedAudit, tmp_path
 
 def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAudit, tmp_path: Path) -> None:
     audit = shutil.copytree(packed.audit, tmp_path / "audit")
-    audited.change_json(audit / "summary.json", lambda told: told.update(refused=0))
+    audited.change_json(audit / "summary.json", lambda content: content.update(refused=0))
     with pytest.raises(UsageError, match=r"summary\.json: was changed since drivelint audit wrote it"):
         make_pack(audit, tmp_path / "pack")
     (audit / MANIFEST).unlink()
@@ -214,7 +214,7 @@ def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAud
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "message"),
     [
         (("pack", "s3://fleet/audit", "--out", "pack"), "is in an object store: copy it into a folder"),
         (("pack", "DIR", "--out", "s3://fleet/pack"), "a pack is a folder of this machine"),
@@ -229,13 +229,13 @@ def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAud
     ids=lambda each: " ".join(each) if isinstance(each, tuple) else "",
 )
 def test_what_cannot_be_packed_is_refused_before_anything_is_judged(
-    command: tuple[str, ...], said: str, packed: PackedAudit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: tuple[str, ...], message: str, packed: PackedAudit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shutil.copytree(packed.audit, tmp_path / "DIR")
     with contextlib.chdir(tmp_path), pytest.raises(SystemExit) as ended:
         cli_main(*command)
     assert ended.value.code == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not (tmp_path / "a").exists()
 
 
@@ -287,27 +287,27 @@ def signed_by_another(pack: Path, p: PackedAudit) -> tuple[str, str]:
 
 @into(FORGED)
 def refused_drive_stated_as_judged(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    def judged(told: dict[str, Any]) -> None:
-        next(each for each in told["predicate"]["drivelint_drives"] if each["log"] == REFUSED)["status"] = "judged"
+    def state_as_judged(statement: dict[str, Any]) -> None:
+        next(each for each in statement["predicate"]["drivelint_drives"] if each["log"] == REFUSED)["status"] = "judged"
 
-    reseal(pack, p.key, judged)
+    reseal(pack, p.key, state_as_judged)
     return "statement says another result", "drivelint_drives"
 
 
 @into(FORGED)
 def undecided_drive_stated_as_passed(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    def passed(told: dict[str, Any]) -> None:
-        predicate = told["predicate"]
+    def state_all_passed(statement: dict[str, Any]) -> None:
+        predicate = statement["predicate"]
         predicate["passedTests"] = sorted([*predicate["passedTests"], *predicate["drivelint_undecidedTests"]])
         predicate["drivelint_undecidedTests"] = []
 
-    reseal(pack, p.key, passed)
+    reseal(pack, p.key, state_all_passed)
     return "statement says another result", "passedTests"
 
 
 @into(FORGED)
 def drive_left_out_of_the_statement(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    reseal(pack, p.key, lambda told: told["subject"].pop())
+    reseal(pack, p.key, lambda statement: statement["subject"].pop())
     return "statement about another log", "subject"
 
 
@@ -331,7 +331,7 @@ def a_row_moved_by_a_little(pack: Path, p: PackedAudit) -> tuple[str, str]:
 def lossy_drive_said_to_be_whole(pack: Path, p: PackedAudit) -> tuple[str, str]:
     change_table(table_of(pack, "receipts"), "lossy", lambda _value: False)
     audited.follow_tables(pack)
-    change_evidence(pack, lambda told: told.update(n_lossy=0))
+    change_evidence(pack, lambda evidence: evidence.update(n_lossy=0))
     audited.sign_anew(pack, p.key)
     return "receipts do not match the tables", "lossy"
 
@@ -340,38 +340,38 @@ def lossy_drive_said_to_be_whole(pack: Path, p: PackedAudit) -> tuple[str, str]:
 def refused_drive_said_to_be_judged(pack: Path, p: PackedAudit) -> tuple[str, str]:
     change_table(table_of(pack, "receipts"), "status", lambda _value: "judged")
     audited.follow_tables(pack)
-    change_evidence(pack, lambda told: told.update(not_judged=[]))
+    change_evidence(pack, lambda evidence: evidence.update(not_judged=[]))
     audited.sign_anew(pack, p.key)
     return "receipts do not match the tables", "status"
 
 
 @into(FORGED)
 def summary_that_knows_no_refusal(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    audited.change_json(pack / AUDIT / "summary.json", lambda told: told.update(refused=0, judged=N_DRIVES))
-    change_evidence(pack, lambda _told: None)
+    audited.change_json(pack / AUDIT / "summary.json", lambda content: content.update(refused=0, judged=N_DRIVES))
+    change_evidence(pack, lambda _evidence: None)
     audited.sign_anew(pack, p.key)
     return "summary.json does not match the tables", "refused"
 
 
 @into(FORGED)
 def other_rules_in_the_settings(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    def other(told: dict[str, Any]) -> None:
-        told["settings"]["rules"] = ["ukhc"]
+    def change_rules(content: dict[str, Any]) -> None:
+        content["settings"]["rules"] = ["ukhc"]
 
-    audited.change_json(pack / AUDIT / "audit.json", other)
-    change_evidence(pack, lambda told: told["audit"]["settings"].update(rules=["ukhc"]))
+    audited.change_json(pack / AUDIT / "audit.json", change_rules)
+    change_evidence(pack, lambda evidence: evidence["audit"]["settings"].update(rules=["ukhc"]))
     audited.sign_anew(pack, p.key)
     return "audit.json does not match the result", "run_id"
 
 
 @into(FORGED)
 def worst_finding_left_out(pack: Path, p: PackedAudit) -> tuple[str, str]:
-    def less(told: dict[str, Any]) -> None:
-        gone = told["findings"].pop(0)
-        told["inputs"] = {
-            what: {k: v for k, v in each.items() if k != gone["key"]} for what, each in told["inputs"].items()
+    def less(evidence: dict[str, Any]) -> None:
+        gone = evidence["findings"].pop(0)
+        evidence["inputs"] = {
+            what: {k: v for k, v in each.items() if k != gone["key"]} for what, each in evidence["inputs"].items()
         }
-        told["findings_left_out"] = 1
+        evidence["findings_left_out"] = 1
         shutil.rmtree(pack / "data/findings" / gone["key"])
 
     change_evidence(pack, less)
@@ -382,8 +382,8 @@ def worst_finding_left_out(pack: Path, p: PackedAudit) -> tuple[str, str]:
 @into(FORGED)
 def table_beside_the_audit(pack: Path, p: PackedAudit) -> tuple[str, str]:
     (pack / AUDIT / "note.txt").write_text("all is well", encoding="utf-8")
-    change_evidence(pack, lambda told: told["outputs"].update({f"{AUDIT}/note.txt": "0"}))
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda evidence: evidence["outputs"].update({f"{AUDIT}/note.txt": "0"}))
+    change_evidence(pack, lambda _evidence: None)
     audited.sign_anew(pack, p.key)
     return "file that nothing names", f"{AUDIT}/note.txt"
 
@@ -414,9 +414,9 @@ def test_rows_that_do_not_follow_from_the_log_are_named(packed: PackedAudit, tmp
     pack = copied(packed, tmp_path)
     turned(pack)
 
-    def half(told: dict[str, Any]) -> None:
+    def half(evidence: dict[str, Any]) -> None:
         rows = {row["finding_id"]: row for row in rows_of(pack, "findings")}
-        for row in told["findings"]:
+        for row in evidence["findings"]:
             row |= {key: rows[row["finding_id"]][key] for key in ("observed", "margin")}
 
     change_evidence(pack, half)
@@ -445,8 +445,8 @@ def test_rows_that_another_pyarrow_wrote_are_not_said_to_have_their_hashes(
     packed: PackedAudit, without_logs: Path, tmp_path: Path
 ) -> None:
     pack = tmp_path / shutil.copytree(without_logs, tmp_path / "pack").name
-    audited.change_json(pack / AUDIT / "audit.json", lambda told: told["versions"].update(pyarrow="1"))
-    change_evidence(pack, lambda told: told["audit"]["versions"].update(pyarrow="1"))
+    audited.change_json(pack / AUDIT / "audit.json", lambda content: content["versions"].update(pyarrow="1"))
+    change_evidence(pack, lambda evidence: evidence["audit"]["versions"].update(pyarrow="1"))
     audited.sign_anew(pack, packed.key)
     found = verify(VerifyRequest(pack, packed.public))
     assert not found.problems

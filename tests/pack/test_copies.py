@@ -13,7 +13,7 @@ import pytest
 from drivelint import cli
 from drivelint.pack import VerifyRequest, verify
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 from tests.pack.audited import table_of
 from tests.pack.packed import make_key, make_pack
 
@@ -46,7 +46,7 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> CopiedFleet:
     for name in names[5:]:
         (logs / name).write_bytes(f"<html>{name}</html>".encode())
     drives.manifest.write_text("log\n" + "".join(f"logs/{name}\n" for name in names), encoding="utf-8")
-    judged(drives, folder / "audit", InThisProcess())
+    run_audit(drives, folder / "audit", InThisProcess())
     pack = make_pack(folder / "audit", folder / "pack", make_key(folder, "ours")[0], with_inputs=True)
     told = [json.loads(path.read_bytes()) for path in (folder / "audit/summary.json", pack / "data/evidence.json")]
     return CopiedFleet(folder / "audit", pack, *told)

@@ -1,6 +1,6 @@
 """Forged packs: every file is hashed anew, what nobody signs is changed, or the owner of the key signs what is not so.
 
-`SEEN` is what the guide's script finds, too. `UNSEEN` it cannot find, and each says why.
+`SCRIPT_FINDS` is what the guide's script finds, too. `SCRIPT_MISSES` it cannot find, and each says why.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from tests.pack.packed import Tamper
 VERDICTS, SUMMARY, EVIDENCE = "data/result/verdicts.parquet", "data/result/summary.json", "data/evidence.json"
 OTHER_PACK = ("file changed since the statement about it", "manifest-sha256.txt")
-SEEN: dict[str, Tamper] = {}
-UNSEEN: dict[str, Tamper] = {}
+SCRIPT_FINDS: dict[str, Tamper] = {}
+SCRIPT_MISSES: dict[str, Tamper] = {}
 
 
 def change_envelope(pack: Path, change: Callable[[dict[str, Any]], None]) -> None:
@@ -84,14 +84,14 @@ def test_a_byte_of_each_class_of_file(name: str, packed: Packed, tmp_path: Path)
 # What somebody without the key changes; the hashes are made anew where that helps.
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def verdict_flipped_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     change_table(pack / VERDICTS, "verdict", to_pass)
     rehash(pack)
     return OTHER_PACK
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def verdict_flipped_and_all_follows(pack: Path, _p: Packed) -> tuple[str, str]:
     change_table(pack / VERDICTS, "verdict", to_pass)
     rewrite_reports(pack)
@@ -99,42 +99,42 @@ def verdict_flipped_and_all_follows(pack: Path, _p: Packed) -> tuple[str, str]:
     return "statement says another result", "failedTests"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def margin_in_the_rows_edited_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     change_numbers(rows_of(pack))
     rehash(pack)
     return OTHER_PACK
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def sql_edited_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(sql_of(pack), "margin, holds", "-0.01 AS margin, holds")
     rehash(pack)
     return OTHER_PACK
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def parameter_edited_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / EVIDENCE, '"ukhc.contact-signature.within_m": "0.4"', '"ukhc.contact-signature.within_m": "0.1"')
     rehash(pack)
     return "statement about another map, rule or parameter", "configuration"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def log_replaced_and_hashed(pack: Path, p: Packed) -> tuple[str, str]:
     shutil.copyfile(log_of(p.other_pack), log_of(pack))
     rehash(pack)
     return OTHER_PACK
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def map_replaced_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/inputs/map/road.xodr", "<road ", "<road  ")
     rehash(pack)
     return OTHER_PACK
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def older_tool_named_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / SUMMARY, '"version": "', '"version": "0.0.')
     told = json.loads((pack / SUMMARY).read_text("utf-8"))["tool"]
@@ -143,7 +143,7 @@ def older_tool_named_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     return "statement about another map, rule or parameter", "configuration"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifests_swapped(pack: Path, _p: Packed) -> tuple[str, str]:
     payload, tags = (pack / MANIFEST).read_bytes(), (pack / TAG_MANIFEST).read_bytes()
     (pack / MANIFEST).write_bytes(tags)
@@ -151,21 +151,21 @@ def manifests_swapped(pack: Path, _p: Packed) -> tuple[str, str]:
     return "manifest names a file outside", f"{MANIFEST}: bag-info.txt"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifest_of_another_pack(pack: Path, p: Packed) -> tuple[str, str]:
     shutil.copyfile(p.other_pack / MANIFEST, pack / MANIFEST)
     rehash(pack, payload=False)
     return "file changed", VERDICTS
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifest_emptied(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / MANIFEST).write_bytes(b"")
     rehash(pack, payload=False)
     return "file added", VERDICTS
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifest_names_a_file_twice(pack: Path, _p: Packed) -> tuple[str, str]:
     line = (pack / MANIFEST).read_text("utf-8").splitlines(keepends=True)[0]
     with (pack / MANIFEST).open("a", encoding="utf-8") as file:
@@ -174,7 +174,7 @@ def manifest_names_a_file_twice(pack: Path, _p: Packed) -> tuple[str, str]:
     return "manifest names a file twice", line[66:-1]
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifest_leads_outside(pack: Path, _p: Packed) -> tuple[str, str]:
     with (pack / MANIFEST).open("a", encoding="utf-8") as file:
         file.write(f"{'0' * 64}  data/../../ours.pem\n{'0' * 64}  .\n")
@@ -182,20 +182,20 @@ def manifest_leads_outside(pack: Path, _p: Packed) -> tuple[str, str]:
     return "manifest names a file outside", "data/../../ours.pem"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def manifest_names_a_place_from_the_root(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / MANIFEST, "  data/evidence.json", f"  {pack}/data/evidence.json")
     rehash(pack, payload=False)
     return "manifest names a file outside", f"{pack}/data/evidence.json"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def letters_of_a_name_in_another_case(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / VERDICTS).rename(pack / "data/result/Verdicts.parquet")
     return "file added", "data/result/Verdicts.parquet"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def two_tables_swapped_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / VERDICTS).rename(pack / "x")
     (pack / "data/result/findings.parquet").rename(pack / VERDICTS)
@@ -204,41 +204,41 @@ def two_tables_swapped_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     return "result not readable", "verdict"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def info_cut(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / INFO).write_bytes((pack / INFO).read_bytes()[:-10])
     rehash(pack, payload=False)
     return "bag-info.txt not readable", INFO
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def info_removed(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / INFO).unlink()
     rehash(pack, payload=False)
     return "file removed", INFO
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def declaration_removed(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "bagit.txt").unlink()
     rehash(pack, payload=False)
     return "file removed", "bagit.txt"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def name_that_is_no_text_added(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "data/result" / os.fsdecode(b"\xff\x1b[2J.parquet")).write_bytes(b"")
     return "file added", "data/result/\udcff"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def size_in_the_info_wrong(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / INFO, "Payload-Oxum: ", "Payload-Oxum: 1")
     rehash(pack, payload=False)
     return "Payload-Oxum wrong", INFO
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def note_added_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     """No signature covers the manifest of the tag files."""
     (pack / "README.txt").write_text("all drives passed", encoding="utf-8")
@@ -246,7 +246,7 @@ def note_added_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     return "file added", "README.txt"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def list_of_files_to_fetch_added(pack: Path, _p: Packed) -> tuple[str, str]:
     """BagIt would fetch them from elsewhere."""
     (pack / "fetch.txt").write_text("https://example.org/x 3 data/x\n", encoding="utf-8")
@@ -254,14 +254,14 @@ def list_of_files_to_fetch_added(pack: Path, _p: Packed) -> tuple[str, str]:
     return "file added", "fetch.txt"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def another_kind_of_manifest_added(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "manifest-md5.txt").write_text(f"{'0' * 32}  {VERDICTS}\n", encoding="utf-8")
     rehash(pack, payload=False)
     return "file added", "manifest-md5.txt"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def plain_statement_added(pack: Path, _p: Packed) -> tuple[str, str]:
     payload = base64.b64decode(json.loads((pack / STATEMENT).read_bytes())["payload"])
     (pack / "statement.json").write_bytes(payload.replace(b'"FAILED"', b'"PASSED"'))
@@ -269,34 +269,34 @@ def plain_statement_added(pack: Path, _p: Packed) -> tuple[str, str]:
     return "file added", "statement.json"
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def key_replaced_and_hashed(pack: Path, p: Packed) -> tuple[str, str]:
     shutil.copyfile(p.other_public, pack / KEY)
     rehash(pack, payload=False)
     return "another key", KEY
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def key_removed_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / KEY).unlink()
     rehash(pack, payload=False)
     return "file removed", KEY
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def signature_of_another_pack(pack: Path, p: Packed) -> tuple[str, str]:
     other = json.loads((p.other_pack / STATEMENT).read_bytes())["signatures"]
     change_envelope(pack, lambda envelope: envelope.update(signatures=other))
     return "signature wrong", STATEMENT
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def kind_of_payload_changed(pack: Path, _p: Packed) -> tuple[str, str]:
     change_envelope(pack, lambda envelope: envelope.update(payloadType="text/plain"))
     return "signature wrong", STATEMENT
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def link_to_the_same_content(pack: Path, _p: Packed) -> tuple[str, str]:
     """Until somebody changes what it leads to."""
     elsewhere = pack.parent / "elsewhere.parquet"
@@ -305,7 +305,7 @@ def link_to_the_same_content(pack: Path, _p: Packed) -> tuple[str, str]:
     return "link", VERDICTS
 
 
-@into(SEEN)
+@into(SCRIPT_FINDS)
 def link_in_place_of_the_payload(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "data").rename(pack.parent / "elsewhere")
     (pack / "data").symlink_to(pack.parent / "elsewhere")
@@ -315,7 +315,7 @@ def link_in_place_of_the_payload(pack: Path, _p: Packed) -> tuple[str, str]:
 # What the script does not see: it looks at files and at what is signed only.
 
 
-@into(UNSEEN)
+@into(SCRIPT_MISSES)
 def text_before_the_key(pack: Path, _p: Packed) -> tuple[str, str]:
     """The script reads the key in it, and that is the right one."""
     (pack / KEY).write_bytes(b"the key of the ministry\n" + (pack / KEY).read_bytes())
@@ -323,21 +323,21 @@ def text_before_the_key(pack: Path, _p: Packed) -> tuple[str, str]:
     return "text beside the key", KEY
 
 
-@into(UNSEEN)
+@into(SCRIPT_MISSES)
 def name_of_the_key_in_the_envelope_changed(pack: Path, _p: Packed) -> tuple[str, str]:
     """DSSE does not sign it, and the script does not read it."""
     change_envelope(pack, lambda envelope: envelope["signatures"][0].update(keyid="the ministry"))
     return "text beside the signed content", STATEMENT
 
 
-@into(UNSEEN)
+@into(SCRIPT_MISSES)
 def text_added_to_the_envelope(pack: Path, _p: Packed) -> tuple[str, str]:
     """As with the name of the key."""
     change_envelope(pack, lambda envelope: envelope.update(result="PASSED"))
     return "text beside the signed content", STATEMENT
 
 
-@into(UNSEEN)
+@into(SCRIPT_MISSES)
 def second_signature_added(pack: Path, p: Packed) -> tuple[str, str]:
     """The script verifies the first."""
     other = json.loads((p.other_pack / STATEMENT).read_bytes())["signatures"]
@@ -345,7 +345,7 @@ def second_signature_added(pack: Path, p: Packed) -> tuple[str, str]:
     return "text beside the signed content", STATEMENT
 
 
-@into(UNSEEN)
+@into(SCRIPT_MISSES)
 def pipe_added(pack: Path, _p: Packed) -> tuple[str, str]:
     """It has no content that could be hashed; reading it would wait for ever."""
     os.mkfifo(pack / "data/pipe")
@@ -353,16 +353,16 @@ def pipe_added(pack: Path, _p: Packed) -> tuple[str, str]:
 
 
 @pytest.mark.sample(0, ci=99)
-@pytest.mark.parametrize("name", [*SEEN, *UNSEEN])
+@pytest.mark.parametrize("name", [*SCRIPT_FINDS, *SCRIPT_MISSES])
 def test_what_was_forged_is_named(name: str, packed: Packed, tmp_path: Path) -> None:
     pack = copied(packed, tmp_path)
-    kind, what = (SEEN | UNSEEN)[name](pack, packed)
+    kind, what = (SCRIPT_FINDS | SCRIPT_MISSES)[name](pack, packed)
     found = verify(VerifyRequest(pack, packed.public)).problems
     assert any(each.kind == kind and what in each.subject for each in found), found
     done = script(pack, packed.public, tmp_path)
     assert done.stderr == ""
     assert "\x1b" not in done.stdout
-    assert done.returncode == (1 if name in SEEN else 0), done.stdout
+    assert done.returncode == (1 if name in SCRIPT_FINDS else 0), done.stdout
 
 
 @pytest.mark.ci

@@ -39,7 +39,7 @@ def pack(packed: Packed, result: Path) -> Path:
 
 
 @pytest.fixture
-def mine(pack: Path, tmp_path: Path) -> Path:
+def pack_copy(pack: Path, tmp_path: Path) -> Path:
     return shutil.copytree(pack, tmp_path / "pack")
 
 
@@ -63,12 +63,12 @@ def test_sheets_go_into_the_pack(pack: Path, result: Path) -> None:
 
 
 @pytest.mark.slow
-def test_verify_writes_the_pages_again(packed: Packed, mine: Path) -> None:
+def test_verify_writes_the_pages_again(packed: Packed, pack_copy: Path) -> None:
     """The one page that was changed is found; the other is as it is written again."""
-    page = min((mine / "data/incidents").glob("*.html"))
+    page = min((pack_copy / "data/incidents").glob("*.html"))
     edit(page, "How sure", "How certain")
-    reseal(mine, packed.key)
-    found = verify(VerifyRequest(mine, packed.public))
+    reseal(pack_copy, packed.key)
+    found = verify(VerifyRequest(pack_copy, packed.public))
     assert [(each.kind, each.subject) for each in found.problems] == [
         ("result not reproduced", f"data/incidents/{page.name}")
     ]
@@ -76,19 +76,19 @@ def test_verify_writes_the_pages_again(packed: Packed, mine: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_sheet_that_evidence_does_not_name(packed: Packed, mine: Path) -> None:
-    shutil.copy(min((mine / "data/incidents").glob("*.html")), mine / "data/incidents/more.html")
-    reseal(mine, packed.key)
-    (problem,) = verify(VerifyRequest(mine, packed.public)).problems
+def test_a_sheet_that_evidence_does_not_name(packed: Packed, pack_copy: Path) -> None:
+    shutil.copy(min((pack_copy / "data/incidents").glob("*.html")), pack_copy / "data/incidents/more.html")
+    reseal(pack_copy, packed.key)
+    (problem,) = verify(VerifyRequest(pack_copy, packed.public)).problems
     assert (problem.kind, problem.subject) == ("file that nothing names", "data/incidents/more.html")
 
 
 @pytest.mark.parametrize("name", ["data/incidents/more.html", "data/result/run.json"])
-def test_a_sheet_of_no_finding(packed: Packed, mine: Path, name: str) -> None:
-    shutil.copy(min((mine / "data/incidents").glob("*.html")), mine / "data/incidents/more.html")
-    change_evidence(mine, lambda told: told["incidents"].extend({name, "data/incidents/more.html"}))
-    reseal(mine, packed.key)
-    found = verify(VerifyRequest(mine, packed.public)).problems
+def test_a_sheet_of_no_finding(packed: Packed, pack_copy: Path, name: str) -> None:
+    shutil.copy(min((pack_copy / "data/incidents").glob("*.html")), pack_copy / "data/incidents/more.html")
+    change_evidence(pack_copy, lambda evidence: evidence["incidents"].extend({name, "data/incidents/more.html"}))
+    reseal(pack_copy, packed.key)
+    found = verify(VerifyRequest(pack_copy, packed.public)).problems
     assert {(each.kind, each.subject) for each in found} == {
         ("evidence.json does not match the result", each) for each in (name, "data/incidents/more.html")
     }

@@ -45,28 +45,28 @@ BY_SIGNER: dict[str, Tamper] = {}
 @into(BY_SIGNER)
 def report_says_otherwise(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/report.html", "FAIL", "PASS")
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "report does not match the tables", "data/result/report.html"
 
 
 @into(BY_SIGNER)
 def failures_left_out_of_the_test_report(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/junit.xml", "<failure", "<system-out")
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "report does not match the tables", "data/result/junit.xml"
 
 
 @into(BY_SIGNER)
 def counts_changed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / SUMMARY, '"fail": ', '"fail": 1')
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "summary.json does not match the tables", "verdicts"
 
 
 @into(BY_SIGNER)
 def count_added(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / SUMMARY, '"near_misses"', '"approved": true,\n  "near_misses"')
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "summary.json does not match the tables", "approved"
 
 
@@ -94,12 +94,12 @@ def margin_of_a_finding_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     change_table(path, "margin", lambda margin: None if margin is None else margin / 2)
     margins = pq.read_table(path)["margin"].to_pylist()
 
-    def said(told: dict[str, Any]) -> None:
-        for row, margin in zip(told["findings"], margins, strict=True):
+    def state_margins(evidence: dict[str, Any]) -> None:
+        for row, margin in zip(evidence["findings"], margins, strict=True):
             row["margin"] = margin
 
     rewrite_reports(pack)
-    change_evidence(pack, said)
+    change_evidence(pack, state_margins)
     return "finding does not give its numbers", "data/findings/"
 
 
@@ -128,25 +128,25 @@ def finding_denied(pack: Path, _p: Packed) -> tuple[str, str]:
     """The list says that it has no SQL, and that lies there."""
     name = sql_of(pack).parent.name
 
-    def denied(told: dict[str, Any]) -> None:
-        next(row for row in told["findings"] if row["finding_id"] == name).update(sql=None)
+    def deny_sql(evidence: dict[str, Any]) -> None:
+        next(row for row in evidence["findings"] if row["finding_id"] == name).update(sql=None)
 
-    change_evidence(pack, denied)
+    change_evidence(pack, deny_sql)
     return "file that nothing names", inner(pack, sql_of(pack))
 
 
 @into(BY_SIGNER)
 def letter_added(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "data/result/approval.json").write_text("{}", encoding="utf-8")
-    change_evidence(pack, lambda told: told["outputs"].update({"data/result/approval.json": ""}))
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda evidence: evidence["outputs"].update({"data/result/approval.json": ""}))
+    change_evidence(pack, lambda _evidence: None)
     return "file that nothing names", "data/result/approval.json"
 
 
 @into(BY_SIGNER)
 def all_the_payload_named_as_mapping(pack: Path, _p: Packed) -> tuple[str, str]:
     (pack / "data/letter.txt").write_text("approved", encoding="utf-8")
-    change_evidence(pack, lambda told: told.update(mapping="data"))
+    change_evidence(pack, lambda evidence: evidence.update(mapping="data"))
     return "file that nothing names", "data/letter.txt"
 
 
@@ -158,46 +158,46 @@ def something_said_twice(pack: Path, _p: Packed) -> tuple[str, str]:
 
 @into(BY_SIGNER)
 def something_more_said(pack: Path, _p: Packed) -> tuple[str, str]:
-    change_evidence(pack, lambda told: told.update(approved_by="the ministry"))
+    change_evidence(pack, lambda evidence: evidence.update(approved_by="the ministry"))
     return "evidence.json does not match the result", "approved_by"
 
 
 @into(BY_SIGNER)
 def form_of_the_future(pack: Path, _p: Packed) -> tuple[str, str]:
-    change_evidence(pack, lambda told: told.update(evidence=2))
+    change_evidence(pack, lambda evidence: evidence.update(evidence=2))
     return "result not readable", "form 2"
 
 
 @into(BY_SIGNER)
 def rules_from_outside(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", '"rules_dirs": []', '"rules_dirs": ["/tmp"]')
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "evidence.json does not match the result", "rules_dirs"
 
 
 @into(BY_SIGNER)
 def places_that_are_no_places(pack: Path, _p: Packed) -> tuple[str, str]:
-    change_evidence(pack, lambda told: told.update(inputs=[1]))
+    change_evidence(pack, lambda evidence: evidence.update(inputs=[1]))
     return "result not readable", ""
 
 
 @into(BY_SIGNER)
 def reason_beside_the_sql(pack: Path, _p: Packed) -> tuple[str, str]:
-    change_evidence(pack, lambda told: told["findings"][0].update(without_sql_because="it is not needed"))
+    change_evidence(pack, lambda evidence: evidence["findings"][0].update(without_sql_because="it is not needed"))
     return "evidence.json does not match the result", "sql"
 
 
 @into(BY_SIGNER)
 def parameter_of_the_check_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", "within_m=0.4", "within_m=0.1")
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "run.json does not match the result", "parameters"
 
 
 @into(BY_SIGNER)
 def parameter_of_the_check_that_is_none(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", "within_m=0.4", "width_m=0.4")
-    change_evidence(pack, lambda _told: None)
+    change_evidence(pack, lambda _evidence: None)
     return "run.json does not match the result", "width_m"
 
 
@@ -267,8 +267,8 @@ def test_a_log_outside_of_the_pack_is_not_read(packed: Packed, tmp_path: Path) -
     pack = copied(packed, tmp_path)
     shutil.copyfile(log_of(pack), tmp_path / "outside.csv")
 
-    def outside(told: dict[str, Any]) -> None:
-        told["inputs"]["traces"] = dict.fromkeys(told["inputs"]["traces"], "data/../../outside.csv")
+    def outside(evidence: dict[str, Any]) -> None:
+        evidence["inputs"]["traces"] = dict.fromkeys(evidence["inputs"]["traces"], "data/../../outside.csv")
 
     change_evidence(pack, outside)
     log_of(pack).unlink()

@@ -51,24 +51,24 @@ def set_margins(pack: Path, margin: float) -> None:
     values = pc.if_else(has, pa.array([margin] * n), pa.nulls(n, pa.float64()))
     pq.write_table(table.set_column(i, table.schema.field(i), values), pack / FINDINGS)
 
-    def said(told: dict[str, Any]) -> None:
-        for row in told["findings"]:
+    def state_margins(evidence: dict[str, Any]) -> None:
+        for row in evidence["findings"]:
             row["margin"] = None if row["margin"] is None else margin
 
     rewrite_reports(pack)
-    change_evidence(pack, said)
+    change_evidence(pack, state_margins)
 
 
-def passed(told: dict[str, Any]) -> None:
-    told["predicate"]["result"] = "PASSED"
+def state_passed(statement: dict[str, Any]) -> None:
+    statement["predicate"]["result"] = "PASSED"
 
 
-def other_log(told: dict[str, Any]) -> None:
-    told["subject"][0]["digest"]["sha256"] = "0" * 64
+def other_log(statement: dict[str, Any]) -> None:
+    statement["subject"][0]["digest"]["sha256"] = "0" * 64
 
 
-def no_rule(told: dict[str, Any]) -> None:
-    told["predicate"]["configuration"].pop()
+def no_rule(statement: dict[str, Any]) -> None:
+    statement["predicate"]["configuration"].pop()
 
 
 TAMPERED: dict[str, Callable[[Path, Packed], tuple[str, str]]] = {}
@@ -197,13 +197,13 @@ def signature_changed(pack: Path, _p: Packed) -> tuple[str, str]:
 
 @tamper
 def statement_says_passed(pack: Path, _p: Packed) -> tuple[str, str]:
-    restate(pack, passed)
+    restate(pack, state_passed)
     return "signature wrong", STATEMENT
 
 
 @tamper
 def statement_says_passed_and_signed_by_another(pack: Path, p: Packed) -> tuple[str, str]:
-    restate(pack, passed, p.other_key)
+    restate(pack, state_passed, p.other_key)
     return "another key", "signed by"
 
 
@@ -271,7 +271,7 @@ def test_there_are_more_than_twenty() -> None:
 @pytest.mark.parametrize(
     ("change", "kind"),
     [
-        (passed, "statement says another result"),
+        (state_passed, "statement says another result"),
         (other_log, "statement about another log"),
         (no_rule, "statement about another map, rule or parameter"),
     ],

@@ -88,7 +88,7 @@ class Stamped(NamedTuple):
     bare: Path
     pack: Path
     authority: Authority
-    other: Authority
+    other_authority: Authority
 
 
 @pytest.fixture(scope="module")
@@ -128,7 +128,7 @@ def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, t
 
 
 def test_another_authority_is_not_trusted(stamped: Stamped, packed: Packed) -> None:
-    (found,) = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.other.root)).problems
+    (found,) = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.other_authority.root)).problems
     assert found.kind == "time stamp of an authority that is not trusted"
 
 
@@ -137,7 +137,7 @@ def test_the_order_in_which_an_authority_sends_its_certificates_does_not_matter(
 ) -> None:
     """One of the two is not the order of DER; openssl sends them as they are listed."""
     statement = stamped.pack / "statement.dsse.json"
-    roots = [stamped.authority.root, stamped.other.root]
+    roots = [stamped.authority.root, stamped.other_authority.root]
     for no, order in enumerate((roots, roots[::-1])):
         stamped.authority.send(*order)
         content = stamped.authority.stamp(statement, tmp_path / f"{no}.tsr").read_bytes()

@@ -44,7 +44,7 @@ def drive(folder: Path, zero_us: int, dataset: str) -> Path:
     return write_log(folder, frames, ego, dataset=dataset)
 
 
-def judged(log: Path, out: Path) -> Any:
+def check_result(log: Path, out: Path) -> Any:
     drivelint.check(log, rules="ukhc.no-collision", robustness=False, annotate=False, out=out)
     return load_result(out)
 
@@ -56,7 +56,7 @@ def test_the_frame_is_the_nearest_in_time_on_any_clock(tmp_path: Path, zero_us: 
     taken = zero_us + FIRST_US + EVERY_US * np.arange(N_FRAMES)
     camera(log, FRONT, taken, pa.array([jpeg(bars(n)) for n in range(N_FRAMES)], pa.binary()))
     camera(log, LEFT, taken + 20_000, pa.array([jpeg(bars(n), "PNG") for n in range(N_FRAMES)], pa.binary()))
-    result = judged(log, tmp_path / "out")
+    result = check_result(log, tmp_path / "out")
     rows = result.pictures.to_pylist()
     assert {(row["camera"], row["shot"]) for row in rows} == {
         (name, shot) for name in (FRONT, LEFT) for shot in ("before", "at", "after")
@@ -82,7 +82,7 @@ def test_a_frame_of_a_video_is_found_by_its_number(tmp_path: Path) -> None:
         container.mux(stream.encode())
     taken = FIRST_US + EVERY_US * np.arange(N_FRAMES)
     camera(log, FRONT, taken, pa.array(range(N_FRAMES), pa.int32()), batch=1000)
-    for row in judged(log, tmp_path / "out").pictures.to_pylist():
+    for row in check_result(log, tmp_path / "out").pictures.to_pylist():
         assert number_in(row["jpeg"]) == round((row["t_frame_ns"] / 1e3 - FIRST_US) / EVERY_US)
 
 
@@ -90,7 +90,7 @@ def test_frames_that_are_paths_are_said_to_be_missing(tmp_path: Path) -> None:
     log = drive(tmp_path / "log", 0, "test-set")
     taken = FIRST_US + EVERY_US * np.arange(N_FRAMES)
     camera(log, FRONT, taken, pa.array([f"frames/{n}.jpg" for n in range(N_FRAMES)], pa.string()))
-    result = judged(log, tmp_path / "out")
+    result = check_result(log, tmp_path / "out")
     assert not result.pictures.num_rows
     (note,) = (note for note in result.notes if FRONT in note)
     assert "convert it with the frames as JPEG" in note
@@ -103,7 +103,7 @@ def test_a_changed_camera_file_is_a_changed_input(tmp_path: Path) -> None:
     camera(log, FRONT, taken, pa.array([jpeg(bars(n)) for n in range(N_FRAMES)], pa.binary()))
     out = tmp_path / "out"
     with record_inputs(OutputPathTest(out), [log]) as recorder:
-        judged(log, out)
+        check_result(log, out)
     inputs = recorder.end_recording_and_return_inputs()
     assert inputs is not None, recorder.trouble
     assert str(log / f"{FRONT}.arrow") in inputs.states
@@ -112,9 +112,9 @@ def test_a_changed_camera_file_is_a_changed_input(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"ARROW1", b"no arrow file at all"])
 def test_a_damaged_camera_file_costs_pictures_and_no_verdict(tmp_path: Path, content: bytes) -> None:
     log = drive(tmp_path / "log", 0, "test-set")
-    before = judged(log, tmp_path / "without")
+    before = check_result(log, tmp_path / "without")
     (log / f"{FRONT}.arrow").write_bytes(content)
-    result = judged(log, tmp_path / "out")
+    result = check_result(log, tmp_path / "out")
     assert not result.pictures.num_rows
     assert any("no picture" in note for note in result.notes)
     assert result.findings["rule_id"].equals(before.findings["rule_id"])

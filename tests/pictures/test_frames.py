@@ -154,13 +154,13 @@ def test_images_of_foxglove_in_protobuf_and_json() -> None:
 
 
 @given(st.binary(max_size=80), st.integers(0, 60))
-def test_damage_is_told(noise: bytes, cut: int) -> None:
+def test_damage_is_told(noise: bytes, length: int) -> None:
     messages = [
         ros_message("sensor_msgs/CompressedImage", format="jpeg", data=list(jpeg(SMALL))),
         ros_message("sensor_msgs/Image", height=32, width=64, encoding="rgb8", step=192, data=list(SMALL.tobytes())),
     ]
     for camera, schema, data in messages:
-        for damaged in (data[:4] + noise, data[: 4 + cut]):
+        for damaged in (data[:4] + noise, data[: 4 + length]):
             with suppress(FrameError):
                 image = read_frame(camera, schema, damaged).image
                 assert isinstance(image, (EncodedImage, RawImage))

@@ -187,7 +187,7 @@ def test_a_folder_with_files_of_somebody_else_is_refused_as_ever(first: Ran) -> 
 
 
 @contextmanager
-def changed(name: str, change: Callable[[bytes], bytes]) -> Iterator[None]:
+def change_file(name: str, change: Callable[[bytes], bytes]) -> Iterator[None]:
     """Change a file, and give it the size and the time that it had where it can have them."""
     path = Path(name)
     before, times = path.read_bytes(), path.stat()
@@ -200,7 +200,7 @@ def changed(name: str, change: Callable[[bytes], bytes]) -> Iterator[None]:
 
 
 @contextmanager
-def added(name: str, content: str = "") -> Iterator[None]:
+def add_file(name: str, content: str = "") -> Iterator[None]:
     assert not Path(name).exists()
     Path(name).parent.mkdir(exist_ok=True)
     Path(name).write_text(content)
@@ -211,7 +211,7 @@ def added(name: str, content: str = "") -> Iterator[None]:
 
 
 @contextmanager
-def moved(name: str) -> Iterator[None]:
+def move_file_away(name: str) -> Iterator[None]:
     path = Path(name)
     path.rename(path.with_name(f"{path.name}.away"))
     try:
@@ -239,20 +239,20 @@ def flip_last(content: bytes) -> bytes:
 
 
 CHANGES: dict[str, Callable[[], AbstractContextManager[None]]] = {
-    "a byte of a log": lambda: changed("logs/near-miss.mcap", flip_last),
-    "one more log": lambda: added("logs/more.csv", "x"),
-    "a log less": lambda: moved("logs/near-miss.mcap"),
-    "the map": lambda: changed("road.xodr", lambda content: content.replace(b"road", b"Road", 1)),
-    "the mapping": lambda: changed("columns.toml", lambda _: b"[COLUMNS]\n"),
-    "a rule": lambda: changed("rules/mine/distance.sql", lambda content: content + b"-- note\n"),
-    "one more rule": lambda: added("rules/mine/more.sql"),
-    "words of a pack": lambda: added("rules/mine/pack.toml", 'title = "Mine"\n'),
-    "the baseline": lambda: changed("before/findings.parquet", flip_last),
-    "one more file of the baseline": lambda: added("before/.drivelint.work.1"),
-    "waivers": lambda: changed("waivers.toml", lambda content: content.replace(b"17", b"18")),
-    "settings": lambda: changed("drivelint.toml", lambda content: content + b"strict = true\n"),
-    "waivers in settings": lambda: changed("drivelint.toml", lambda c: c + WAIVER.format("mine.*").encode()),
-    "no settings": lambda: moved("drivelint.toml"),
+    "a byte of a log": lambda: change_file("logs/near-miss.mcap", flip_last),
+    "one more log": lambda: add_file("logs/more.csv", "x"),
+    "a log less": lambda: move_file_away("logs/near-miss.mcap"),
+    "the map": lambda: change_file("road.xodr", lambda content: content.replace(b"road", b"Road", 1)),
+    "the mapping": lambda: change_file("columns.toml", lambda _: b"[COLUMNS]\n"),
+    "a rule": lambda: change_file("rules/mine/distance.sql", lambda content: content + b"-- note\n"),
+    "one more rule": lambda: add_file("rules/mine/more.sql"),
+    "words of a pack": lambda: add_file("rules/mine/pack.toml", 'title = "Mine"\n'),
+    "the baseline": lambda: change_file("before/findings.parquet", flip_last),
+    "one more file of the baseline": lambda: add_file("before/.drivelint.work.1"),
+    "waivers": lambda: change_file("waivers.toml", lambda content: content.replace(b"17", b"18")),
+    "settings": lambda: change_file("drivelint.toml", lambda content: content + b"strict = true\n"),
+    "waivers in settings": lambda: change_file("drivelint.toml", lambda c: c + WAIVER.format("mine.*").encode()),
+    "no settings": lambda: move_file_away("drivelint.toml"),
     "time zone": lambda: in_environment("TZ", "Asia/Tokyo"),
     "width": lambda: in_environment("COLUMNS", "77"),
     "program": another_program,
@@ -260,9 +260,9 @@ CHANGES: dict[str, Callable[[], AbstractContextManager[None]]] = {
 }
 
 
-@pytest.mark.parametrize("what", CHANGES)
-def test_what_changes_is_judged_anew(first: Ran, what: str) -> None:
-    with CHANGES[what]():
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_changes_is_judged_anew(first: Ran, change: str) -> None:
+    with CHANGES[change]():
         assert is_judged_anew(*ARGUMENTS)
     assert not is_judged_anew(*ARGUMENTS)
 
@@ -299,7 +299,7 @@ def test_the_day_counts_only_where_there_are_waivers(first: Ran, receipt: Path) 
 
 
 def test_a_file_beside_the_inputs_does_not_count(first: Ran) -> None:
-    with added("notes.txt"), changed("logs/near-miss.mcap", lambda content: content):
+    with add_file("notes.txt"), change_file("logs/near-miss.mcap", lambda content: content):
         assert not is_judged_anew(*ARGUMENTS)
 
 
@@ -318,7 +318,7 @@ def test_a_damaged_receipt_is_judged_anew(first: Ran, receipt: Path) -> None:
     assert not is_judged_anew(*ARGUMENTS)
 
 
-KEPT: dict[str, tuple[Result, bool]] = {
+RESULTS: dict[str, tuple[Result, bool]] = {
     "whole": (result([verdict("pass")]), True),
     "a drive was not judged": (result([verdict("pass")], drives=[drive(), drive("d2", status="not_judged")]), False),
     "a rule erred": (result([verdict("error")]), False),
@@ -329,16 +329,16 @@ KEPT: dict[str, tuple[Result, bool]] = {
 }
 
 
-@pytest.mark.parametrize("what", KEPT)
-def test_only_a_run_is_kept_that_its_inputs_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
-    judged, is_kept = KEPT[what]
-    log = "out/annotated/x.mcap" if what == "its log is an output" else "x.mcap"
+@pytest.mark.parametrize("case", RESULTS)
+def test_only_a_run_is_kept_that_its_inputs_tell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str) -> None:
+    judged, is_kept = RESULTS[case]
+    log = "out/annotated/x.mcap" if case == "its log is an output" else "x.mcap"
     judged = replace(judged, run_options=RunRequest(traces={"d1": log}))
 
     def judges(_settings: object, _progress: object, interruption: Interruption, *_: object) -> Result:
-        if what == "only its copies were interrupted":
+        if case == "only its copies were interrupted":
             interruption.requested = True
-        if what == "a rule took too long for a copy":
+        if case == "a rule took too long for a copy":
             report_not_repeatable("it took too long")
         return judged
 
@@ -369,9 +369,9 @@ def test_logs_beside_the_results_are_found(first: Ran, tmp_path: Path, monkeypat
         patch.setattr(run, "check", judges)
         assert drivelint(*args).exit_code == 0
     assert not is_judged_anew(*args)
-    with added("results/log.csv", "x"):
+    with add_file("results/log.csv", "x"):
         assert is_judged_anew(*args)
-    with added("results/annotated/log.csv", "x"):
+    with add_file("results/annotated/log.csv", "x"):
         assert is_judged_anew(*args)
     assert not is_judged_anew(*args)
     inside = tuple("results/annotated" if each == "." else each for each in args)

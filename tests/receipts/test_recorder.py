@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 NO_OUTPUTS = OutputPathTest(None)
 
 
-def read_by(job: Callable[[], object], *named: Path) -> RunInputs:
-    with record_inputs(NO_OUTPUTS, named) as recorder:
+def read_by(job: Callable[[], object], *named_paths: Path) -> RunInputs:
+    with record_inputs(NO_OUTPUTS, named_paths) as recorder:
         job()
     inputs = recorder.end_recording_and_return_inputs()
     assert inputs is not None, recorder.trouble

@@ -24,7 +24,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache" / "receipts"
 
 
-def kept(out: Path, key: str = KEY, content: bytes = b"rows") -> Receipt:
+def stored_receipt(out: Path, key: str = KEY, content: bytes = b"rows") -> Receipt:
     (out / "annotated").mkdir(parents=True, exist_ok=True)
     (out / "a.parquet").write_bytes(content)
     (out / "annotated" / "x.mcap").write_bytes(content[::-1])
@@ -43,7 +43,7 @@ def is_there(key: str = KEY) -> bool:
 
 
 def test_a_receipt_is_read_as_it_was_kept(home: Path, tmp_path: Path) -> None:
-    receipt = kept(tmp_path / "out")
+    receipt = stored_receipt(tmp_path / "out")
     (tmp_path / "out" / "a.parquet").write_bytes(b"another")
     with store.open_receipt(KEY) as found:
         assert found is not None
@@ -56,7 +56,7 @@ def test_a_receipt_is_read_as_it_was_kept(home: Path, tmp_path: Path) -> None:
 
 
 def test_a_damaged_receipt_is_none(home: Path, tmp_path: Path) -> None:
-    kept(tmp_path / "out")
+    stored_receipt(tmp_path / "out")
     whole = (home / KEY).read_bytes()
     for at in (0, 20, len(whole) // 2, whole.index(b"\n") + 1, len(whole) - 33, len(whole) - 1):
         (home / KEY).write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
@@ -75,21 +75,21 @@ def test_the_receipts_that_were_not_used_for_longest_go(
 ) -> None:
     monkeypatch.setattr(store, "MOST_KEPT_RECEIPTS", 3)
     for n, key in enumerate("abc"):
-        kept(tmp_path / "out", key)
+        stored_receipt(tmp_path / "out", key)
         os.utime(home / key, (n, n))
     assert is_there("a")  # is used
-    kept(tmp_path / "out", "d")
+    stored_receipt(tmp_path / "out", "d")
     assert {path.name for path in home.iterdir()} == {"a", "c", "d"}
 
 
 def test_receipts_take_no_more_bytes_than_they_may(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "MOST_BYTES_OF_ALL_RECEIPTS", 5000)
     for n, key in enumerate("abc"):
-        kept(tmp_path / "out", key, bytes(1000))
+        stored_receipt(tmp_path / "out", key, bytes(1000))
         os.utime(home / key, (n, n))
     assert {path.name for path in home.iterdir()} == {"b", "c"}
     monkeypatch.setattr(store, "MOST_BYTES_OF_ONE_RECEIPT", 1999)
-    kept(tmp_path / "out", "e", bytes(1000))
+    stored_receipt(tmp_path / "out", "e", bytes(1000))
     assert not is_there("e")
 
 
@@ -102,7 +102,7 @@ def test_a_file_that_changes_while_it_is_kept_leaves_nothing(home: Path, tmp_pat
 def test_two_at_once_leave_a_whole_one(home: Path, tmp_path: Path) -> None:
     def keeps(n: int) -> None:
         for _ in range(20):
-            kept(tmp_path / f"out{n}", content=b"%d" % n * 100_000)
+            stored_receipt(tmp_path / f"out{n}", content=b"%d" % n * 100_000)
 
     def reads(n: int) -> set[bytes]:
         found_ = set()
@@ -126,9 +126,9 @@ def test_two_at_once_leave_a_whole_one(home: Path, tmp_path: Path) -> None:
 
 def test_nothing_is_kept_without_a_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store, "cache_folder", lambda: None)
-    kept(tmp_path / "out")
+    stored_receipt(tmp_path / "out")
     assert not is_there()
     (tmp_path / "file").write_text("")
     monkeypatch.setattr(store, "cache_folder", lambda: tmp_path / "file")  # cannot be written to
-    kept(tmp_path / "out")
+    stored_receipt(tmp_path / "out")
     assert not is_there()

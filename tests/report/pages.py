@@ -45,7 +45,7 @@ class Parsed(HTMLParser):
         if self.open and self.open[-1] not in {"script", "style"}:
             self.text += data
 
-    def all(self, attribute: str) -> list[str]:
+    def values(self, attribute: str) -> list[str]:
         return [value for _, attrs in self.tags if (value := attrs.get(attribute)) is not None]
 
 

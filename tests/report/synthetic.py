@@ -21,13 +21,13 @@ def table(name: str, rows: list[dict[str, Any]]) -> pa.Table:
     return pa.Table.from_pylist(rows, schema=schema)
 
 
-def verdict(said: str, **over: Any) -> dict[str, Any]:
+def verdict(word: str, **over: Any) -> dict[str, Any]:
     """Return one verdict row of the nominal overtake rule, 8.3 s into drive `d1`."""
     return {
         "drive_id": "d1", "ego_id": "1", "rule_id": SDA, "rule_version": "v", "kind": "execution", "profile": "nominal",
         "severity": "critical", "object_id": "3", "occurrence": 0, "ref_id": 0, "t_ref_ns": 108 * SECOND,
-        "t_start_ns": 108 * SECOND, "t_end_ns": 108 * SECOND, "t_worst_ns": 108 * SECOND, "verdict": said,
-        "reason_code": said, "reason": f"because {said}", "reason_measures": False,
+        "t_start_ns": 108 * SECOND, "t_end_ns": 108 * SECOND, "t_worst_ns": 108 * SECOND, "verdict": word,
+        "reason_code": word, "reason": f"because {word}", "reason_measures": False,
         "observed": 58.0, "required": 64.0, "margin": -6.0,
         "unit": "m", "near_miss": False, "assumes": None, "n_expected": 1, "n_judged": 1, "finding_ids": [],
     } | over  # fmt: skip

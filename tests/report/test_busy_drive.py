@@ -41,7 +41,7 @@ def busy(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 @pytest.fixture(scope="module")
-def opened(busy: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+def browser_page(busy: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     folder = tmp_path_factory.mktemp("page")
     (folder / "report.html").write_text(page(busy), encoding="utf-8")
     with Page(folder / "profile", (folder / "report.html").as_uri()) as shown:
@@ -49,35 +49,39 @@ def opened(busy: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[P
 
 
 @pytest.mark.slow
-def test_it_is_small_and_opens_without_a_word_or_a_request(busy: Result, opened: Page) -> None:
+def test_it_is_small_and_opens_without_a_word_or_a_request(busy: Result, browser_page: Page) -> None:
     assert busy.drives["n_egos"][0].as_py() > 20
     assert busy.findings.num_rows > 50
     assert len(page(busy).encode()) < TYPICAL
-    assert opened.complaints() == []
-    assert [url for url in opened.requests() if not url.startswith(("file:", "data:"))] == []
+    assert browser_page.complaints() == []
+    assert [url for url in browser_page.requests() if not url.startswith(("file:", "data:"))] == []
 
 
 @pytest.mark.parametrize("width", [390, 1280])
-def test_nothing_sticks_out_and_no_number_is_torn(opened: Page, width: int) -> None:
-    opened.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
-    assert opened.value("document.documentElement.scrollWidth") <= width
-    assert opened.value(BEYOND) == []
+def test_nothing_sticks_out_and_no_number_is_torn(browser_page: Page, width: int) -> None:
+    browser_page.call(
+        "Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500
+    )
+    assert browser_page.value("document.documentElement.scrollWidth") <= width
+    assert browser_page.value(BEYOND) == []
     torn = """[...document.querySelectorAll('#findings-table td.actor, #findings-table td.num')].filter(cell => {
       const text = document.createRange();
       text.selectNodeContents(cell.querySelector('b') || cell);
       const lines = new Set([...text.getClientRects()].map(box => Math.round(box.top)));
       return cell.textContent.trim().length < 8 && lines.size > 1;
     }).length"""
-    assert opened.value(torn) == 0
+    assert browser_page.value(torn) == 0
 
 
-def test_each_finding_says_whose_it_is(busy: Result, opened: Page) -> None:
-    told = opened.value("[...document.querySelectorAll('#findings-table td[data-label=ego]')].map(c => c.textContent)")
+def test_each_finding_says_whose_it_is(busy: Result, browser_page: Page) -> None:
+    told = browser_page.value(
+        "[...document.querySelectorAll('#findings-table td[data-label=ego]')].map(c => c.textContent)"
+    )
     shown = busy.findings.num_rows + sum(busy.verdicts["near_miss"].to_pylist())
     assert len(told) == shown
     assert set(told) >= set(busy.findings["ego_id"].to_pylist())
 
 
-def test_it_prints_on_pages_that_somebody_reads(opened: Page) -> None:
-    pdf = base64.b64decode(opened.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
+def test_it_prints_on_pages_that_somebody_reads(browser_page: Page) -> None:
+    pdf = base64.b64decode(browser_page.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) in PAGES

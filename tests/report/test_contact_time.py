@@ -17,7 +17,7 @@ from drivelint.result.model import Result
 from tests.report.pages import page
 from tests.report.synthetic import SECOND, drive, finding, result, rule, verdict
 
-TOLD = "11.80 s (deepest at 12.20 s)"
+TIME_TEXT = "11.80 s (deepest at 12.20 s)"
 
 
 def contact(**over: Any) -> Result:
@@ -43,10 +43,10 @@ def plain(html: str) -> str:
 def test_the_page_says_when_it_began() -> None:
     text = page(contact())
     body = plain(text)
-    assert f"The worst moment {TOLD}" in body
+    assert f"The worst moment {TIME_TEXT}" in body
     assert "ego 1 and object 3 at 11.80 s, closing at 10.44 m/s, 0.30 m deep at 12.20 s." in body
     (cell,) = re.findall(r'data-label="when">(.*?)</td>', text)
-    assert plain(cell) == TOLD
+    assert plain(cell) == TIME_TEXT
     assert "first contact at 11.80 s" in body, "where the picture of the deepest step is"
 
 
@@ -62,7 +62,7 @@ def test_the_page_says_when_it_began() -> None:
     ids=["junit", "markdown", "sarif", "xqar", "notebook"],
 )
 def test_every_report_says_both_times(text: Any) -> None:
-    assert TOLD in text(contact())
+    assert TIME_TEXT in text(contact())
 
 
 def test_the_terminal_says_both_times() -> None:

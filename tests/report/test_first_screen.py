@@ -264,12 +264,14 @@ def test_what_a_baseline_lets_through_is_not_the_worst_moment() -> None:
 def test_what_lies_beside_the_page_is_linked_only_if_it_is_there(tmp_path: Path) -> None:
     run = result([verdict("fail")], [finding(finding_id="abc")])
     write(run, tmp_path)
-    assert not [h for h in Parsed((tmp_path / "report.html").read_text()).all("href") if h[0] != "#" and h != "data:,"]
+    assert not [
+        h for h in Parsed((tmp_path / "report.html").read_text()).values("href") if h[0] != "#" and h != "data:,"
+    ]
     for name in ("annotated/d1.mcap", "incidents/abc.html"):
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).touch()
     write(run, tmp_path)
-    links = Parsed((tmp_path / "report.html").read_text()).all("href")
+    links = Parsed((tmp_path / "report.html").read_text()).values("href")
     assert {"annotated/d1.mcap", "incidents/abc.html"} <= set(links)
     assert "drivelint explain abc --in ." in plain(section((tmp_path / "report.html").read_text(), "worst"))
 

@@ -32,60 +32,60 @@ def file(overtakes: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def opened(file: Path) -> Iterator[Page]:
+def browser_page(file: Path) -> Iterator[Page]:
     with Page(file.parent / "profile", file.as_uri(), 1440) as shown:
         yield shown
 
 
-def test_the_worst_moment_is_on_the_first_screen(opened: Page) -> None:
+def test_the_worst_moment_is_on_the_first_screen(browser_page: Page) -> None:
     for what in ("h1", ".inputs", ".gate-line", ".hero svg.plan", ".hero .replay", ".hero-facts .big"):
-        box = opened.value(f"document.querySelector('{what}').getBoundingClientRect().toJSON()")
+        box = browser_page.value(f"document.querySelector('{what}').getBoundingClientRect().toJSON()")
         assert 0 <= box["top"] < box["bottom"] <= 900, what
         assert box["width"] > 0
 
 
-def test_one_cursor_runs_over_all_strips_with_the_scene(opened: Page) -> None:
+def test_one_cursor_runs_over_all_strips_with_the_scene(browser_page: Page) -> None:
     move = "(() => {{ const r = document.querySelector('.hero input'); r.value = {}; r.dispatchEvent(new Event('input')); }})()"
     cursor = "document.querySelector('.strips .cursor')"
     ego = "document.querySelector('.hero use.b-ego').getAttribute('transform')"
-    start, end = (int(opened.value(f"document.querySelector('.strips').dataset.{n}")) for n in ("from", "to"))
-    home = int(opened.value("document.querySelector('.hero .scene').dataset.t"))
-    there = opened.value(ego)
-    opened.value(move.format(home - 200))
-    assert opened.value(ego) != there
-    at = float(re.findall(r"[\d.]+", opened.value(f"{cursor}.getAttribute('transform')"))[0])
+    start, end = (int(browser_page.value(f"document.querySelector('.strips').dataset.{n}")) for n in ("from", "to"))
+    home = int(browser_page.value("document.querySelector('.hero .scene').dataset.t"))
+    there = browser_page.value(ego)
+    browser_page.value(move.format(home - 200))
+    assert browser_page.value(ego) != there
+    at = float(re.findall(r"[\d.]+", browser_page.value(f"{cursor}.getAttribute('transform')"))[0])
     assert at == pytest.approx(46 + 546 * (home - 200 - start) / (end - start), abs=0.1)
-    assert opened.value(f"{cursor}.getAttribute('visibility')") == "visible"
-    assert opened.value(f"{cursor}.getBoundingClientRect().height") > 100
-    opened.value(move.format(home))
-    assert opened.value(ego) == there
+    assert browser_page.value(f"{cursor}.getAttribute('visibility')") == "visible"
+    assert browser_page.value(f"{cursor}.getBoundingClientRect().height") > 100
+    browser_page.value(move.format(home))
+    assert browser_page.value(ego) == there
 
 
-def test_a_click_sorts_and_the_address_remembers(opened: Page, file: Path) -> None:
+def test_a_click_sorts_and_the_address_remembers(browser_page: Page, file: Path) -> None:
     head = "[...document.querySelectorAll('#findings-table th')].findIndex(h => h.textContent.startsWith('when'))"
-    n = opened.value(head)
+    n = browser_page.value(head)
     press = f"document.querySelectorAll('#findings-table thead th')[{n}].querySelector('button').click()"
     for direction, reverse in (("ascending", False), ("descending", True)):
-        opened.value(press)
-        times = [float(cell.split("\u00a0")[0]) for cell in opened.value(COLUMN.format(n))]
+        browser_page.value(press)
+        times = [float(cell.split("\u00a0")[0]) for cell in browser_page.value(COLUMN.format(n))]
         assert times == sorted(times, reverse=reverse)
         assert len(set(times)) > 3
-        assert opened.value(f"document.querySelectorAll('#findings-table thead th')[{n}].ariaSort") == direction
-    opened.value(
+        assert browser_page.value(f"document.querySelectorAll('#findings-table thead th')[{n}].ariaSort") == direction
+    browser_page.value(
         "(() => { const s = document.querySelector('select[name=severity]'); s.value = 'major';"
         " s.dispatchEvent(new Event('input', {bubbles: true})); })()"
     )
-    address = opened.value("location.hash")
+    address = browser_page.value("location.hash")
     assert address == f"#?severity=major&sort={n}-"
     with Page(file.parent / "again", f"{file.as_uri()}{address}", 1440) as again:
         assert again.value("document.querySelector('select[name=severity]').value") == "major"
-        assert again.value(COLUMN.format(n)) == opened.value(COLUMN.format(n))
-        assert again.value("document.querySelector('.filters output').textContent") == opened.value(
+        assert again.value(COLUMN.format(n)) == browser_page.value(COLUMN.format(n))
+        assert again.value("document.querySelector('.filters output').textContent") == browser_page.value(
             "document.querySelector('.filters output').textContent"
         )
-    opened.value("new Promise(done => { document.querySelector('.filters').reset(); setTimeout(done, 20); })")
-    assert opened.value("location.hash") == ""
-    assert opened.complaints() == []
+    browser_page.value("new Promise(done => { document.querySelector('.filters').reset(); setTimeout(done, 20); })")
+    assert browser_page.value("location.hash") == ""
+    assert browser_page.complaints() == []
 
 
 @pytest.mark.parametrize("width", [390, 1280])
@@ -100,7 +100,7 @@ def test_nothing_is_too_wide_even_if_all_is_opened(file: Path, tmp_path: Path, w
         assert shown.value("document.documentElement.scrollWidth") <= width
 
 
-def many(run: Result, n: int) -> Result:
+def repeat_drives(run: Result, n: int) -> Result:
     """Return a result of `n` drives: those of `run` again and again under other ids; a third of them without findings."""
     parts = {}
     for name in (
@@ -131,7 +131,7 @@ def many(run: Result, n: int) -> Result:
 
 @pytest.mark.slow
 def test_three_hundred_drives_are_small_and_print_on_few_pages(overtakes: Result, tmp_path: Path) -> None:
-    text = page(many(overtakes, 300))
+    text = page(repeat_drives(overtakes, 300))
     assert len(text) < 4_000_000
     path = tmp_path / "report.html"
     path.write_text(text, encoding="utf-8")

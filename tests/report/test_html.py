@@ -37,7 +37,7 @@ def test_markup_in_names_stays_text() -> None:
     assert [attrs.get("type") for tag, attrs in parsed.tags if tag == "script"] == ["application/json", None]
     assert not [tag for tag, _ in parsed.tags if tag == "img"]
     assert not [name for _, attrs in parsed.tags for name in attrs if name.startswith("on")]
-    ids = parsed.all("id")
+    ids = parsed.values("id")
     assert all(re.fullmatch(r"[A-Za-z][\w.-]*", name) for name in ids)
 
 
@@ -54,9 +54,9 @@ def test_the_policy_allows_our_style_and_script_and_nothing_from_outside(text: s
         (body,) = re.findall(rf"<{tag}>(.*?)</{tag}>", text, re.DOTALL)
         digest = base64.b64encode(hashlib.sha256(body.encode()).digest()).decode()
         assert f"{tag}-src 'sha256-{digest}'" in policy
-    assert not parsed.all("style")
-    assert not parsed.all("src")
-    assert all(link.startswith(("#", "data:,")) for link in parsed.all("href"))
+    assert not parsed.values("style")
+    assert not parsed.values("src")
+    assert all(link.startswith(("#", "data:,")) for link in parsed.values("href"))
     assert not re.search(r"(?:https?:)?//[a-z]|@import|url\((?!#)", text)
 
 
@@ -76,7 +76,7 @@ def test_the_same_result_gives_the_same_bytes(overtakes: Result, text: str) -> N
 
 def test_every_finding_has_its_anchor_its_row_and_a_picture(overtakes: Result, text: str) -> None:
     parsed = Parsed(text)
-    ids, links = parsed.all("id"), parsed.all("href")
+    ids, links = parsed.values("id"), parsed.values("href")
     assert len(ids) == len(set(ids))
     for row in overtakes.findings.to_pylist():
         assert f"finding-{row['finding_id']}" in ids
@@ -151,12 +151,12 @@ def test_a_crowd_is_cut_to_the_worst_and_says_so(monkeypatch: pytest.MonkeyPatch
     ]
     run = result([verdict("fail")], rows, drives=[drive(f"d{k}") for k in range(9)])
     parsed = Parsed(page(run))
-    assert sum(name.startswith("finding-") for name in parsed.all("id")) <= 3
+    assert sum(name.startswith("finding-") for name in parsed.values("id")) <= 3
     assert "The 3 most severe are shown" in parsed.text
     assert "Another 8 drives have no section here" in parsed.text
-    assert f"finding-d7-{rows[7]['rule_id']}-nominal-0" in parsed.all("id")
-    links = {link[1:] for link in parsed.all("href") if link.startswith("#")}
-    assert links <= set(parsed.all("id"))
+    assert f"finding-d7-{rows[7]['rule_id']}-nominal-0" in parsed.values("id")
+    links = {link[1:] for link in parsed.values("href") if link.startswith("#")}
+    assert links <= set(parsed.values("id"))
 
 
 def rows_of(text: str, table: str) -> list[list[str]]:
@@ -268,7 +268,7 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
 
 
 @pytest.mark.parametrize(
-    ("reasons", "shown"),
+    ("reasons", "summary"),
     [
         ([("no_size", "the ego has no size")] * 2, "The ego has no size"),
         (
@@ -290,9 +290,9 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
         ),
     ],
 )
-def test_a_shown_reason_is_one_that_was_given(reasons: list[tuple[str, str]], shown: str) -> None:
+def test_a_shown_reason_is_one_that_was_given(reasons: list[tuple[str, str]], summary: str) -> None:
     told = [VerdictReason(("null_value", code, ""), text) for code, text in reasons]
-    assert summarise_reasons(told) == summarise_reasons(reversed(told)) == shown
+    assert summarise_reasons(told) == summarise_reasons(reversed(told)) == summary
 
 
 def test_reasons_are_alike_by_their_codes() -> None:
@@ -366,6 +366,6 @@ def test_a_folder_without_a_result_is_one_clear_error(tmp_path: Path) -> None:
 
 def test_a_finding_has_its_time_in_utc_where_the_log_has_one() -> None:
     text = page(result([verdict("fail")], [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)]))
-    assert Parsed(text).all("datetime") == ["2023-11-14T22:13:28.250Z"] * 2  # of the worst moment, and in its drive
+    assert Parsed(text).values("datetime") == ["2023-11-14T22:13:28.250Z"] * 2  # of the worst moment, and in its drive
     assert ">2023-11-14T22:13:28.250Z<" in text
     assert "<time" not in page(result([verdict("fail")], [finding()]))

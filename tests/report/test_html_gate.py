@@ -40,7 +40,7 @@ def gated(overtakes: Result) -> Result:
 
 
 @pytest.fixture(scope="module")
-def opened(gated: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+def browser_page(gated: Result, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     folder = tmp_path_factory.mktemp("page")
     (folder / "report.html").write_text(page(gated), encoding="utf-8")
     with Page(folder / "profile", (folder / "report.html").as_uri()) as shown:
@@ -139,15 +139,15 @@ def test_a_page_made_later_from_the_folder_is_the_same(gated: Result, tmp_path: 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 @pytest.mark.parametrize("kind", ["new", "known", "waived"])
-def test_the_filter_shows_only_one_kind(gated: Result, opened: Page, kind: str) -> None:
-    opened.value(
+def test_the_filter_shows_only_one_kind(gated: Result, browser_page: Page, kind: str) -> None:
+    browser_page.value(
         f"(() => {{ const s = document.querySelector('select[name=standing]'); s.value = 'gate-{kind}';"
         " s.dispatchEvent(new Event('change', {bubbles: true})); })()"
     )
     shown = "[...document.querySelectorAll('#findings-table tbody tr')].filter(r => r.offsetHeight > 0)"
-    assert opened.value(f"{shown}.length") == kinds(gated)[kind] > 0
-    assert opened.value(f"{shown}.every(r => r.querySelector('.st-{kind}'))")
+    assert browser_page.value(f"{shown}.length") == kinds(gated)[kind] > 0
+    assert browser_page.value(f"{shown}.every(r => r.querySelector('.st-{kind}'))")
     lines = "[...document.querySelectorAll('.timeline .tl[data-k], .moment[data-k]')].filter(r => !r.hidden)"
-    assert opened.value(f"{lines}.length") > 0
-    assert opened.value(f"{lines}.every(r => r.dataset.k.split(' ').includes('gate-{kind}'))")
-    assert opened.complaints() == []
+    assert browser_page.value(f"{lines}.length") > 0
+    assert browser_page.value(f"{lines}.every(r => r.dataset.k.split(' ').includes('gate-{kind}'))")
+    assert browser_page.complaints() == []

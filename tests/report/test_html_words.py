@@ -69,19 +69,21 @@ TABLE_2 = "517679d844fca426b466d6b86ed5ee3d570cb5cfe527b74acfd6e71503da0857"
 
 
 @pytest.mark.parametrize(
-    ("sha256", "said"),
+    ("sha256", "difference"),
     [
         pytest.param(TABLE_1, "some 2 m less", id="table 1"),
         pytest.param(TABLE_2, "no vehicle was detected, but one may have been there", id="table 2"),
         pytest.param("ab" * 32, "", id="no log of theirs"),
     ],
 )
-def test_differences_from_the_paper_are_named_on_its_own_logs_only(overtakes: Result, sha256: str, said: str) -> None:
+def test_differences_from_the_paper_are_named_on_its_own_logs_only(
+    overtakes: Result, sha256: str, difference: str
+) -> None:
     hashes = pa.array([sha256] * overtakes.drives.num_rows)
     place = overtakes.drives.column_names.index("sha256")
     told = Parsed(page(replace(overtakes, drives=overtakes.drives.set_column(place, "sha256", hashes)))).text
-    assert ("the paper's Table" in told) == bool(said)
-    assert said in told
+    assert ("the paper's Table" in told) == bool(difference)
+    assert difference in told
 
 
 def test_the_logs_of_the_paper_are_the_ones_that_the_differences_are_about() -> None:

@@ -57,7 +57,7 @@ def test_each_verdict_has_its_place() -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "strict", "shown"),
+    ("verdicts", "strict", "outcome"),
     [
         (["pass", "not_applicable"], False, "passed"),
         (["not_applicable"], False, "skipped"),
@@ -68,9 +68,9 @@ def test_each_verdict_has_its_place() -> None:
         (["pass", "unknown", "fail", "error"], False, "error"),
     ],
 )
-def test_a_case_gathers_its_verdict_rows_by_the_worst(said: list[str], strict: bool, shown: str) -> None:
-    run = result([verdict(v, occurrence=n) for n, v in enumerate(said)], strict=strict)
-    assert list(outcomes(run).values()) == [shown]
+def test_a_case_gathers_its_verdict_rows_by_the_worst(verdicts: list[str], strict: bool, outcome: str) -> None:
+    run = result([verdict(v, occurrence=n) for n, v in enumerate(verdicts)], strict=strict)
+    assert list(outcomes(run).values()) == [outcome]
 
 
 VERDICTS = ("pass", "fail", "unknown", "not_applicable", "unrecorded", "error")
@@ -159,19 +159,19 @@ def test_only_what_is_required_may_not_be_unknown() -> None:
     assert outcomes(run) == {f"{SDA} [nominal]": "skipped", "ukhc.other [nominal]": "error"}
 
 
-@pytest.mark.parametrize(("strict", "shown"), [(True, "error"), (False, "skipped")])
-@pytest.mark.parametrize("others", [(), ("pass",)])
+@pytest.mark.parametrize(("strict", "outcome"), [(True, "error"), (False, "skipped")])
+@pytest.mark.parametrize("other_verdicts", [(), ("pass",)])
 def test_a_signal_that_the_log_lacks_is_an_error_only_if_it_causes_the_exit_code(
-    strict: bool, shown: str, others: tuple[str, ...]
+    strict: bool, outcome: str, other_verdicts: tuple[str, ...]
 ) -> None:
     lacking = verdict("not_applicable", reason_code="unrecorded_indicator", reason="the log has no indicators")
-    run = result([lacking, *(verdict(v, occurrence=1) for v in others)], strict=strict)
+    run = result([lacking, *(verdict(v, occurrence=1) for v in other_verdicts)], strict=strict)
     case = parsed(run).find(".//testcase")
     assert case is not None
-    if strict or not others:
-        assert [child.tag for child in case] == [shown]
+    if strict or not other_verdicts:
+        assert [child.tag for child in case] == [outcome]
         assert "the log has no indicators" in (case[0].text or "")
-    assert exit_status(run).code == (ExitCode.NOT_JUDGED if strict or not others else ExitCode.OK)
+    assert exit_status(run).code == (ExitCode.NOT_JUDGED if strict or not other_verdicts else ExitCode.OK)
 
 
 def test_a_failure_lists_its_findings_and_a_skip_its_reasons() -> None:

@@ -41,13 +41,15 @@ def tables(text: str) -> list[list[list[str]]]:
     return found
 
 
-def told(run: Result, **more: Any) -> str:
+def markdown_text(run: Result, **more: Any) -> str:
     return markdown.render(run, **more).decode()
 
 
 def test_counts_stand_beside_each_other_per_pack() -> None:
     rules = [rule(), rule("rss.along", pack="rss")]
-    counted, *_ = tables(told(result([*MIXED, verdict("pass", rule_id="rss.along")], [finding()], rules=rules)))
+    counted, *_ = tables(
+        markdown_text(result([*MIXED, verdict("pass", rule_id="rss.along")], [finding()], rules=rules))
+    )
     assert counted == [
         ["pack", "pass", "fail", "unknown", "not applicable", "error"],
         ["ukhc", "1", "1", "1", "1", "0"],
@@ -56,7 +58,7 @@ def test_counts_stand_beside_each_other_per_pack() -> None:
 
 
 def test_a_finding_is_a_row_that_links_to_the_report() -> None:
-    text = told(result(MIXED, [finding()]), base_url="https://ci.example/run 1/")
+    text = markdown_text(result(MIXED, [finding()]), base_url="https://ci.example/run 1/")
     _, found, _ = tables(text)
     assert found[1] == [
         "critical", "d1", "8.00 s", f"{SDA} [nominal]", "ego 1, object 3", "58.00 m", "> 64.00 m",
@@ -78,21 +80,26 @@ def test_the_link_is_an_anchor_of_the_report() -> None:
     from drivelint.report import html
 
     run = result(MIXED, [finding(finding_id="0123456789abcdef")])
-    assert "https://ci.example/report.html#finding-0123456789abcdef" in told(run, base_url="https://ci.example")
+    assert "https://ci.example/report.html#finding-0123456789abcdef" in markdown_text(
+        run, base_url="https://ci.example"
+    )
     assert 'id="finding-0123456789abcdef"' in html.render(run).decode()
 
 
 def test_without_a_base_url_nothing_is_linked() -> None:
     """A relative link in a comment on a pull request would lead into the repository."""
     run = result(MIXED, [finding()])
-    for text in (told(run), markdown.render_difference(*compare_results(run, run, ("a", "b"), "critical"), "critical")):
+    for text in (
+        markdown_text(run),
+        markdown.render_difference(*compare_results(run, run, ("a", "b"), "critical"), "critical"),
+    ):
         assert not [c for t in PARSER.parse(text) for c in t.children or [] if c.type == "link_open"]
-    assert tables(told(run))[1][1][3] == f"{SDA} [nominal]"
+    assert tables(markdown_text(run))[1][1][3] == f"{SDA} [nominal]"
 
 
 def test_unknown_is_told_with_its_reason() -> None:
     rows = [*MIXED, *(verdict("unknown", occurrence=n, reason="no lights", rule_id=f"ukhc.r{n}") for n in range(1, 6))]
-    text = told(result(rows, [finding()]))
+    text = markdown_text(result(rows, [finding()]))
     assert "Could not be judged: 6 verdicts, for 2 reasons" in text
     assert tables(text)[-1][1:] == [
         ["unknown", "ukhc.r1, ukhc.r2, ukhc.r3 and 2 more", "no lights (5 times)"],
@@ -102,7 +109,7 @@ def test_unknown_is_told_with_its_reason() -> None:
 
 def test_drives_that_were_not_judged_are_told() -> None:
     lost = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
-    text = told(result([verdict("pass")], drives=[drive(), lost]))
+    text = markdown_text(result([verdict("pass")], drives=[drive(), lost]))
     assert "### Drives that could not be judged (1)\n\n* `d2`: d2.csv: no ego" in text
     assert text.startswith("## drivelint: NOT JUDGED, exit 4")
 
@@ -115,7 +122,7 @@ def test_drives_that_were_not_judged_are_told() -> None:
     ],
 )
 def test_what_does_not_gate_is_apart_with_the_reason(row: dict[str, Any], over: dict[str, Any], why: str) -> None:
-    text = told(result([verdict("pass")], [finding(**row)], rules=[rule(**over)]))
+    text = markdown_text(result([verdict("pass")], [finding(**row)], rules=[rule(**over)]))
     assert "<details><summary>Findings that do not gate (1)</summary>" in text
     assert tables(text)[1][1][-1] == why
 
@@ -128,7 +135,7 @@ def test_words_of_a_log_are_shown_as_they_are(where: str) -> None:
     row = {where: HOSTILE}
     other = row if where == "drive_id" else {}
     run = result([verdict("unknown", **row)], [finding(**row)], drives=[drive(**other)])
-    text = told(run)
+    text = markdown_text(run)
     kinds = {c.type for t in PARSER.parse(text) for c in t.children or []}
     assert kinds <= {"text", "code_inline", "link_open", "link_close", "softbreak", "text_special"}
     assert all(len(row_) == len(table[0]) for table in tables(text) for row_ in table)
@@ -161,7 +168,7 @@ def gated(base: list[dict[str, Any]], new: list[dict[str, Any]]) -> Result:
 def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     late = finding(finding_id="late", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND)
     gone = finding(finding_id="gone", object_id="6")
-    text = told(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
+    text = markdown_text(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
     assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known (1 critical), 1 waived (1 critical)." in text
     assert "Of the baseline's findings: 1 unchanged; gone but not fixed: 1 unknown now." in text
     assert "### New findings (1)" in text
@@ -182,7 +189,7 @@ def test_new_findings_that_do_not_gate_are_called_new_and_worse_ones_worse() -> 
         finding_id="m", severity="minor", t_start_ns=115 * SECOND, t_end_ns=115 * SECOND, t_worst_ns=115 * SECOND
     )
     late = finding(finding_id="l", t_start_ns=120 * SECOND, t_end_ns=120 * SECOND, t_worst_ns=120 * SECOND)
-    text = told(gated([finding(margin=-14.07)], [finding(margin=-26.07), minor, late]))
+    text = markdown_text(gated([finding(margin=-14.07)], [finding(margin=-26.07), minor, late]))
     assert "### New findings (1); 1 more new findings, listed below, do not gate" in text
     assert "Findings that do not gate (2): 1 new" in text
     assert [row[-1] for row in tables(text)[2][1:]] == [
@@ -193,7 +200,7 @@ def test_new_findings_that_do_not_gate_are_called_new_and_worse_ones_worse() -> 
 
 def test_a_flood_is_cut_and_says_so() -> None:
     many = [finding(finding_id=f"f{n}", occurrence=n) for n in range(500)]
-    text = told(result([verdict("fail")], many))
+    text = markdown_text(result([verdict("fail")], many))
     assert "### Findings (the first 40 of 500)" in text
     assert len(text) < 65_536
 
@@ -201,7 +208,9 @@ def test_a_flood_is_cut_and_says_so() -> None:
 def test_a_comment_has_room_for_it_whatever_the_names_are() -> None:
     long = "x" * 3000
     rows = [verdict("unknown", reason=f"{n}", rule_id=f"r{n}.{long}") for n in range(60)]
-    text = told(result(rows, [finding(drive_id=long, finding_id=str(n)) for n in range(50)], drives=[drive(long)]))
+    text = markdown_text(
+        result(rows, [finding(drive_id=long, finding_id=str(n)) for n in range(50)], drives=[drive(long)])
+    )
     assert len(text) < 65_536
     assert "parts left out to keep this comment short" in text
     assert text.endswith("The complete report is report.html in the folder of the results.\n")
@@ -221,7 +230,9 @@ def test_a_difference_as_markdown() -> None:
 
 
 def test_a_time_is_in_utc_too_where_the_log_has_one() -> None:
-    _, found, *_ = tables(told(result(MIXED, [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)])))
+    _, found, *_ = tables(
+        markdown_text(result(MIXED, [finding()], drives=[drive(utc_start_ns=1_700_000_000_250_000_000)]))
+    )
     assert [row[2] for row in found] == ["time", "8.00 s, 2023-11-14T22:13:28.250Z"]
-    _, found, *_ = tables(told(result(MIXED, [finding()])))
+    _, found, *_ = tables(markdown_text(result(MIXED, [finding()])))
     assert found[1][2] == "8.00 s"

@@ -13,18 +13,18 @@ from tests.report.synthetic import SECOND
 
 
 @pytest.mark.parametrize(
-    ("title", "who", "apart"),
+    ("title", "name", "apart"),
     [
         ("speed", "object 3", True),
         ("offset from the lane's centre, left positive", "object 3", True),
         ("offset from the lane's centre, left positive", "object 5f0d8a52-pedestrian-crossing-17", False),
     ],
 )
-def test_numbers_go_below_a_title_that_leaves_no_room(title: str, who: str, *, apart: bool) -> None:
+def test_numbers_go_below_a_title_that_leaves_no_room(title: str, name: str, *, apart: bool) -> None:
     t = [n * SECOND for n in range(4)]
-    lines = [ChartLine("met", who, t, [1.0, 2.0, 3.0, 4.0]), ChartLine("ego", "ego 1", t, [4.0, 3.0, 2.0, 1.0])]
+    lines = [ChartLine("met", name, t, [1.0, 2.0, 3.0, 4.0]), ChartLine("ego", "ego 1", t, [4.0, 3.0, 2.0, 1.0])]
     drawn = _chart_of_quantity(0, title, "m", lines, t[2], x=Axis(t[0], t[-1], LEFT, RIGHT), course=None)
-    assert drawn["at_worst"] == f"ego 1 2.00, {who} 3.00"
+    assert drawn["at_worst"] == f"ego 1 2.00, {name} 3.00"
     top = float(drawn["top"])
     if apart:
         assert drawn["value_y"] == drawn["label_y"]

@@ -33,7 +33,7 @@ UNKNOWN = result(
     [verdict("unknown", profile=profile) for profile in ("nominal", "observed")],
     rules=[rule(profiles=["nominal", "observed"])],
 )
-BOTH = run(*TWICE, LATE)
+TWO_EVENTS = run(*TWICE, LATE)
 
 
 def parsed(text: str) -> Any:
@@ -45,7 +45,7 @@ def words(element: Any) -> str:
 
 
 def test_the_page_counts_as_its_headline_does() -> None:
-    tree = parsed(page(BOTH))
+    tree = parsed(page(TWO_EVENTS))
     assert "2 critical findings in 1 of 1 drive" in words(tree.find(".//h1"))
     assert words(tree.get_element_by_id("findings")) == "Worst first: findings 2"
     assert WHY + "." in [words(p) for p in tree.xpath("//section[@aria-labelledby='findings']/p")]
@@ -62,8 +62,8 @@ def test_a_page_without_such_rows_does_not_speak_of_them() -> None:
 
 
 def test_the_comment_of_a_pull_request_counts_as_its_exit_line_does() -> None:
-    text = markdown.render(BOTH).decode()
-    assert exit_status(BOTH).why == "2 findings at or above severity critical"
+    text = markdown.render(TWO_EVENTS).decode()
+    assert exit_status(TWO_EVENTS).why == "2 findings at or above severity critical"
     assert f"### Findings (2)\n\n{WHY}.\n\n| severity" in text
 
 
@@ -80,14 +80,14 @@ def test_the_comment_of_a_flood_says_how_many_rows_it_has() -> None:
 
 def test_the_tables_of_a_terminal_count_as_its_verdict_does() -> None:
     console = Console(file=io.StringIO(), width=120, force_terminal=False)
-    console.print(terminal.render(BOTH, "out", 120, verbose=True))
+    console.print(terminal.render(TWO_EVENTS, "out", 120, verbose=True))
     text = console.file.getvalue()  # type: ignore[attr-defined]
     assert "Findings (2)" in text
     assert WHY in text
 
 
 def test_what_is_known_is_as_many_as_what_is_unchanged() -> None:
-    of = GateInputs(date(2026, 11, 29), BOTH, "main").apply_to(BOTH)
+    of = GateInputs(date(2026, 11, 29), TWO_EVENTS, "main").apply_to(TWO_EVENTS)
     text = markdown.render(of).decode()
     assert "no new finding; 2 known (2 critical) in 1 of 1 drive" in text
     assert "2 unchanged" in text

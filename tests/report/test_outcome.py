@@ -24,7 +24,7 @@ from tests.report.pages import page
 from tests.report.synthetic import SDA, drive, finding, result, rule, verdict
 
 TODAY = date(2026, 11, 26)
-KNOWN = "FINDINGS no new finding; 2 known (1 critical, 1 minor)"
+KNOWN_TEXT = "FINDINGS no new finding; 2 known (1 critical, 1 minor)"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 LATER = rule("ukhc.spare", title="Time to spare", severity="minor", sense="holds")
 
@@ -64,7 +64,7 @@ def heads(of: Result) -> list[str]:
 
 
 MIXED = [finding(), crash(drive_id="d2"), finding(drive_id="d2", rule_id="ukhc.spare", severity="minor")]
-NONE = run([])
+NO_FINDING = run([])
 WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
 
 
@@ -73,7 +73,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
     [
         (run(MIXED), "FAIL 2 critical, 1 minor findings in 2 of 3 drives; CONTACT in 1 drive"),
         (
-            against(NONE, run(MIXED)),
+            against(NO_FINDING, run(MIXED)),
             "FAIL 3 findings in 2 of 3 drives: 3 new (2 critical, 1 minor; 2 gate); CONTACT in 1 drive",
         ),
         (
@@ -82,7 +82,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run(MIXED), WAIVER),
-            f"{KNOWN}, 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            f"{KNOWN_TEXT}, 1 waived (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             against(run([crash(drive_id="d2")]), run([crash(drive_id="d2"), crash()])),
@@ -90,7 +90,7 @@ WAIVER = Waiver("w.toml:1", SDA, "ticket 17", "jo", "2027-01-31")
         ),
         (
             against(run(MIXED[1:]), run([finding(n_copies=100, n_stays=53), *MIXED[1:]]), confidence=0.95),
-            f"{KNOWN}, 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
+            f"{KNOWN_TEXT}, 1 only possible (1 critical) in 2 of 3 drives; CONTACT in 1 drive (known)",
         ),
         (
             GateInputs(TODAY, confidence=0.95).apply_to(run([finding(n_copies=100, n_stays=53), *MIXED[1:]])),
@@ -284,13 +284,13 @@ def test_the_title_of_a_broken_rule_does_not_stand_alone() -> None:
 
 def test_the_end_says_that_there_is_no_baseline() -> None:
     assert any(line.startswith("exit 0: ") and line.endswith("(no baseline)") for line in screen(run([])))
-    assert not any("no baseline" in line for line in screen(against(NONE, run([]))))
+    assert not any("no baseline" in line for line in screen(against(NO_FINDING, run([]))))
 
 
 def test_a_near_miss_in_a_run_with_a_baseline_is_not_said_to_lack_one() -> None:
     near = result([verdict("pass", near_miss=True, margin=0.1)])
-    assert "only findings are compared, and this is a near miss" in page(against(NONE, near))
-    assert "no baseline was given" not in page(against(NONE, near))
+    assert "only findings are compared, and this is a near miss" in page(against(NO_FINDING, near))
+    assert "no baseline was given" not in page(against(NO_FINDING, near))
 
 
 def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() -> None:
@@ -348,7 +348,7 @@ def test_the_worst_moment_of_a_passing_page_says_that_it_is_let_through() -> Non
     known = page(against(run(MIXED), run(MIXED)))
     assert re.search(r'id="worst">The worst moment, which is known ', known)
     assert '<div class="hero k-fail k-through">' in known
-    new = page(against(NONE, run(MIXED)))
+    new = page(against(NO_FINDING, run(MIXED)))
     assert 'id="worst">The worst moment <' in new
     assert "k-fail k-through" not in new
 

@@ -112,14 +112,16 @@ def test_a_finding_is_a_result_with_its_place_and_its_id() -> None:
     assert "suppressions" not in found
 
 
-def named(run: Result, **paths: str) -> Result:
+def with_paths(run: Result, **paths: str) -> Result:
     return replace(run, run_options=RunRequest(relative_paths=paths))
 
 
 def test_a_log_has_its_path_from_the_folder_of_the_check() -> None:
     """As code scanning needs it to find the file; a log outside that folder has its name alone."""
     drives = [drive(), drive("d2", file_name="a b.csv")]
-    run = log(named(result(MIXED, [finding(), finding(drive_id="d2")], drives=drives), d2="logs #1/wet:day/a b.csv"))
+    run = log(
+        with_paths(result(MIXED, [finding(), finding(drive_id="d2")], drives=drives), d2="logs #1/wet:day/a b.csv")
+    )
     assert "%SRCROOT%" in run["originalUriBaseIds"]
     first, second = (artifact["location"] for artifact in run["artifacts"])
     assert first == {"uri": "d1.csv"}

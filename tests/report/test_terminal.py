@@ -23,7 +23,7 @@ WARNING = {
 INFO = WARNING | {"severity": "info", "check_id": "note", "message": "nothing to worry about"}
 
 
-def shown(run: Result, width: int = 120, *, verbose: bool = True) -> str:
+def screen_text(run: Result, width: int = 120, *, verbose: bool = True) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=False)
     console.print(terminal.render(run, "out", width, verbose=verbose))
     text = console.file.getvalue()  # type: ignore[attr-defined]
@@ -43,7 +43,7 @@ def test_everything_is_told(width: int) -> None:
         drives=[drive(quality=[WARNING, INFO]), drive("d2", status="not_judged", status_reason="d2.csv: no ego")],
         rules=[rule(), rule("ukhc.signal", status="draft", severity="minor")],
     )
-    text = " ".join(shown(run, width).split())
+    text = " ".join(screen_text(run, width).split())
     for part in ("8.00 s", "58.00 m", "64.00 m", "-6.00 m", "[nominal]", "Findings (1)", "Near misses", "101.50 m"):
         assert part in text
     assert "Could not be judged (2)" in text
@@ -56,7 +56,7 @@ def test_everything_is_told(width: int) -> None:
 
 
 def summary(run: Result, width: int = 120) -> list[str]:
-    return shown(run, width, verbose=False).splitlines()
+    return screen_text(run, width, verbose=False).splitlines()
 
 
 def collision(drive_id: str, **over: object) -> dict[str, object]:
@@ -227,22 +227,24 @@ def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
 def test_packs_are_counted_apart() -> None:
     rules = [rule(), rule("rss.along", pack="rss"), rule("rss.across", pack="rss")]
     rows = [verdict("pass"), verdict("fail", rule_id="rss.along"), verdict("pass", rule_id="rss.across")]
-    lines = [line.split() for line in shown(result(rows, [finding(rule_id="rss.along")], rules=rules)).splitlines()]
+    lines = [
+        line.split() for line in screen_text(result(rows, [finding(rule_id="rss.along")], rules=rules)).splitlines()
+    ]
     assert ["all", "of", "ukhc", "1", "·", "·", "·", "·"] in lines
     assert ["all", "of", "rss", "1", "1", "·", "·", "·"] in lines
     assert not [line for line in lines if line[:1] == ["all"] and line[1:2] != ["of"]]
-    alone = [line.split() for line in shown(result([verdict("pass")])).splitlines()]
+    alone = [line.split() for line in screen_text(result([verdict("pass")])).splitlines()]
     assert ["all", "1", "·", "·", "·", "·"] in alone
 
 
 def test_the_conditions_that_were_given_are_told() -> None:
     wet = [{"condition": "weather", "value": "wet", "source": "env"}]
-    assert "judged in: weather=wet" in shown(result([verdict("pass")], drives=[drive(conditions=wet)]))
-    assert "judged in" not in shown(result([verdict("pass")]))
+    assert "judged in: weather=wet" in screen_text(result([verdict("pass")], drives=[drive(conditions=wet)]))
+    assert "judged in" not in screen_text(result([verdict("pass")]))
 
 
 def test_nothing_to_report_is_short() -> None:
-    text = shown(result([verdict("pass")]))
+    text = screen_text(result([verdict("pass")]))
     for section in ("Findings", "Near misses", "Could not be judged", "Data quality"):
         assert section not in text
     assert "exit 0" in text
@@ -250,7 +252,7 @@ def test_nothing_to_report_is_short() -> None:
 
 def test_long_sections_are_cut_and_say_so() -> None:
     many = [finding(occurrence=n) for n in range(25)]
-    text = shown(result([verdict("fail")], many))
+    text = screen_text(result([verdict("fail")], many))
     assert "Findings (first 20 of 25)" in text
     assert text.count("observed 58.00 m") + text.count("  58.00 m") == 20
 
@@ -258,7 +260,7 @@ def test_long_sections_are_cut_and_say_so() -> None:
 def test_of_many_rules_with_one_reason_the_first_ten_are_named() -> None:
     rules = [f"rss.r{n:02}" for n in range(8)] + [f"ukhc.r{n:02}" for n in range(8)]
     rows = [verdict("unknown", rule_id=rule_id, reason="no map", profile=None) for rule_id in rules]
-    text = shown(result([*rows, verdict("unknown", rule_id="stvo.r00", reason="no class", profile=None)]))
+    text = screen_text(result([*rows, verdict("unknown", rule_id="stvo.r00", reason="no class", profile=None)]))
     _, _, told = text.partition("Could not be judged")
     assert [rule_id in told for rule_id in rules] == [True] * 10 + [False] * 6
     assert "and 6 more of ukhc" in told
@@ -267,7 +269,7 @@ def test_of_many_rules_with_one_reason_the_first_ten_are_named() -> None:
 
 @pytest.mark.parametrize("width", [120, 60])
 def test_a_logs_words_are_text_not_markup(width: int) -> None:
-    text = shown(
+    text = screen_text(
         result([verdict("unknown", reason="[red]lost[/red]")], [finding(object_id="[bold]3[/bold]", reason="[x]")]),
         width,
     )
@@ -276,16 +278,16 @@ def test_a_logs_words_are_text_not_markup(width: int) -> None:
 
 
 def test_the_end_says_where_to_look_next() -> None:
-    assert "open     out/report.html" in shown(result([verdict("pass")]))
-    assert "drivelint inspect" not in shown(result([verdict("pass")]))
-    assert "drivelint inspect TRACE" in shown(result([verdict("unknown")]))
+    assert "open     out/report.html" in screen_text(result([verdict("pass")]))
+    assert "drivelint inspect" not in screen_text(result([verdict("pass")]))
+    assert "drivelint inspect TRACE" in screen_text(result([verdict("unknown")]))
     console = Console(file=io.StringIO(), width=120)
     console.print(terminal.render(result([verdict("pass")])))
     assert "--out DIR" in console.file.getvalue()  # type: ignore[attr-defined]
 
 
 def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
-    narrow = shown(result([verdict("fail")], [finding(rule_id="ukhc.r162.safe-distance-ahead")]), 80)
+    narrow = screen_text(result([verdict("fail")], [finding(rule_id="ukhc.r162.safe-distance-ahead")]), 80)
     assert "ukhc.r162.safe-distance-ahead [nominal]" in narrow
     assert "observed 58.00 m, required 64.00 m, margin -6.00 m" in narrow
     rules = list(load_rules().values())
@@ -300,7 +302,7 @@ def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
     """The keys that most rules do not set stand there only where they are set."""
     rules = load_rules()
     shown = {
-        rule.id: {row.split("  ")[0] for row in printed(rules_text.rule_details(rule)).splitlines()}
+        rule.id: {row.split("  ")[0] for row in text_of_part(rules_text.rule_details(rule)).splitlines()}
         for rule in rules.values()
     }
     for words, is_set in (
@@ -324,12 +326,12 @@ def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
 
 def test_the_page_of_a_rule_names_the_parameter_that_holds_a_time() -> None:
     rule = load_rules()["ukhc.r103.signal-off"]
-    assert re.search(r"^window +5 s \(off_s\) *$", printed(rules_text.rule_details(rule)), re.MULTILINE)
+    assert re.search(r"^window +5 s \(off_s\) *$", text_of_part(rules_text.rule_details(rule)), re.MULTILINE)
     limited = msgspec.structs.replace(rule, applies=Conditions(road_type=("rural", "town"), limit_max_mps=13.4))
-    assert "road_type rural or town, limit_max_mps 13.4" in printed(rules_text.rule_details(limited))
+    assert "road_type rural or town, limit_max_mps 13.4" in text_of_part(rules_text.rule_details(limited))
 
 
-def printed(part: RenderableType) -> str:
+def text_of_part(part: RenderableType) -> str:
     console = Console(file=io.StringIO(), width=200)
     console.print(part)
     return console.file.getvalue()  # type: ignore[attr-defined, no-any-return]
@@ -347,17 +349,17 @@ def test_parameters_that_were_set_are_named() -> None:
         {"name": "gap_m", "value": "3.0", "unit": "m", "overridden": True},
         {"name": "time_s", "value": "2.0", "unit": "s", "overridden": False},
     ]
-    text = shown(result([verdict("pass")], rules=[rule(params=given)]), verbose=False)
+    text = screen_text(result([verdict("pass")], rules=[rule(params=given)]), verbose=False)
     assert f"set for this run: {rule()['rule_id']}.gap_m = 3.0 m\n" in re.sub(r" +\n", "\n", text)
     assert "time_s" not in text
-    assert "set for this run" not in shown(result([verdict("pass")]), verbose=False)
+    assert "set for this run" not in screen_text(result([verdict("pass")]), verbose=False)
 
 
 def test_without_findings_the_command_explains_an_unknown_verdict() -> None:
     unknown = verdict("unknown", reason_code="null_value", reason="the speed is not known")
-    text = shown(result([verdict("pass", occurrence=1), unknown]), verbose=False)
+    text = screen_text(result([verdict("pass", occurrence=1), unknown]), verbose=False)
     assert f"explain  drivelint explain {unknown['rule_id']}@{unknown['drive_id']} --in out" in text
-    assert "drivelint explain" not in shown(result([verdict("pass")]), verbose=False)
+    assert "drivelint explain" not in screen_text(result([verdict("pass")]), verbose=False)
 
 
 def test_findings_of_draft_rules_are_counted_beside_the_exit_code() -> None:

@@ -45,7 +45,7 @@ def test_the_results_are_valid_xqar(run: Result) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "status", "issues"),
+    ("verdicts", "status", "issues"),
     [
         (["pass"], "completed", 0),
         (["not_applicable"], "skipped", 0),
@@ -56,12 +56,12 @@ def test_the_results_are_valid_xqar(run: Result) -> None:
         ([], "skipped", 0),
     ],
 )
-def test_only_what_judged_something_completed(said: list[str], status: str, issues: int) -> None:
-    found = checker(result([verdict(each, occurrence=n) for n, each in enumerate(said)]))
+def test_only_what_judged_something_completed(verdicts: list[str], status: str, issues: int) -> None:
+    found = checker(result([verdict(each, occurrence=n) for n, each in enumerate(verdicts)]))
     assert found.get("status") == status
     assert len(found.findall("Issue")) == issues, "and what was skipped must have none, by ASAM's reader"
     assert {data.get("key"): int(data.get("value")) for data in found.iter("Metadata")} == {
-        each: said.count(each) for each in ("pass", "fail", "unknown", "not_applicable", "error")
+        each: verdicts.count(each) for each in ("pass", "fail", "unknown", "not_applicable", "error")
     }
 
 

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-OTHER = "ukhc.r126.gap"
+GAP = "ukhc.r126.gap"
 UID = xqar.rule_uid(SDA, "ukhc")
 
 
 def run() -> Result:
     """Return the result of two rules over two drives: one breaks a rule and leaves it unknown, the other was not judged."""
-    rows = [verdict("fail"), verdict("unknown", occurrence=1), verdict("not_applicable", rule_id=OTHER)]
+    rows = [verdict("fail"), verdict("unknown", occurrence=1), verdict("not_applicable", rule_id=GAP)]
     drives = [drive(), drive("d2", status="not_judged", status_reason="no ego", sha256=None)]
-    return result(rows, [finding(x_m=1.5, y_m=-2.0)], drives=drives, rules=[rule(), rule(rule_id=OTHER)])
+    return result(rows, [finding(x_m=1.5, y_m=-2.0)], drives=drives, rules=[rule(), rule(rule_id=GAP)])
 
 
 def read_back(content: bytes, tmp_path: Path) -> Any:
@@ -41,7 +41,7 @@ def read_back(content: bytes, tmp_path: Path) -> Any:
 
 def test_every_rule_is_addressed_by_its_checker() -> None:
     checkers = list(etree.fromstring(xqar.render(run())).iter("Checker"))
-    assert [each.get("checkerId") for each in checkers] == [SDA, OTHER] * 2
+    assert [each.get("checkerId") for each in checkers] == [SDA, GAP] * 2
     for checker in checkers:
         addressed = {each.get("ruleUID") for each in checker.iter("AddressedRule")}
         assert addressed == {xqar.rule_uid(checker.get("checkerId", ""), "ukhc")}
@@ -52,7 +52,7 @@ def test_asams_reader_finds_what_we_wrote(tmp_path: Path) -> None:
     found = read_back(xqar.render(run()), tmp_path)
     assert found.get_result_version() == "1.0.0"
     assert found.get_checker_bundle_names() == ["drivelint d1", "drivelint d2"]
-    assert [found.get_checker_ids(bundle) for bundle in found.get_checker_bundle_names()] == [[SDA, OTHER]] * 2
+    assert [found.get_checker_ids(bundle) for bundle in found.get_checker_bundle_names()] == [[SDA, GAP]] * 2
     statuses = [[each.status.value for each in bundle.checkers] for bundle in found.get_checker_bundle_results()]
     assert statuses == [["completed", "skipped"], ["skipped", "skipped"]]
     issues = sorted(found.get_issues_by_rule_uid(UID), key=lambda issue: int(issue.issue_id))

@@ -28,7 +28,7 @@ def a_finding(name: str, **over: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("other", "counted"),
+    ("change", "finding_ids"),
     [
         ({"profile": "observed"}, ["a"]),
         ({"profile": "observed", "t_start_ns": 109 * SECOND, "t_end_ns": 109 * SECOND}, ["a", "b"]),
@@ -41,9 +41,9 @@ def a_finding(name: str, **over: Any) -> dict[str, Any]:
     ],
 )
 def test_one_overtake_under_two_profiles_is_one_and_so_is_a_touch_of_two_egos(
-    other: dict[str, Any], counted: list[str]
+    change: dict[str, Any], finding_ids: list[str]
 ) -> None:
-    assert ids(one_finding_per_event([a_finding("a"), a_finding("b", **other)])) == counted
+    assert ids(one_finding_per_event([a_finding("a"), a_finding("b", **change)])) == finding_ids
 
 
 def test_a_sure_finding_stands_for_one_that_is_only_possible() -> None:
@@ -51,7 +51,7 @@ def test_a_sure_finding_stands_for_one_that_is_only_possible() -> None:
     assert ids(one_finding_per_event(rows)) == ["b"]
 
 
-one = st.fixed_dictionaries(
+finding_columns = st.fixed_dictionaries(
     {
         "ego_id": st.sampled_from("12"),
         "object_id": st.sampled_from("12"),
@@ -62,7 +62,7 @@ one = st.fixed_dictionaries(
 )
 
 
-@given(st.lists(one, max_size=7))
+@given(st.lists(finding_columns, max_size=7))
 def test_an_audit_counts_as_a_check_does(some: list[dict[str, Any]]) -> None:
     made = [
         a_finding(str(n), **each, n_copies=100) | {"t_end_ns": each["t_start_ns"] + 2, "key": "k"}

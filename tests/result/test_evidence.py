@@ -186,7 +186,7 @@ def test_every_finding_has_its_course_and_the_steps_are_the_margins(tmp_path: Pa
     assert compared > 100
 
 
-def _named(row: dict[str, Any]) -> tuple[Any, ...]:
+def _verdict_key(row: dict[str, Any]) -> tuple[Any, ...]:
     return tuple(row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
 
 
@@ -203,8 +203,8 @@ def test_every_near_miss_has_its_course_and_its_worst_step_is_in_it(margins: boo
         robustness=False,
     )
     result = check(settings, Silent())
-    near = {_named(row): row for row in result.verdicts.to_pylist() if row["near_miss"]}
-    courses = {_named(row): row for row in result.courses.to_pylist() if row["finding_id"] is None}
+    near = {_verdict_key(row): row for row in result.verdicts.to_pylist() if row["near_miss"]}
+    courses = {_verdict_key(row): row for row in result.courses.to_pylist() if row["finding_id"] is None}
     assert near.keys() == courses.keys()
     assert len({row["rule_id"] for row in near.values()}) > 1
     for key, row in near.items():
@@ -245,11 +245,13 @@ def test_the_tables_can_be_read_by_column(result: Result) -> None:
     assert frame.explode("actors").unnest("actors").height > frame.height
 
 
-@pytest.mark.parametrize("most", [1, 5, 7, 100])
-def test_moments_are_cut_between_egos(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", most)
+@pytest.mark.parametrize("max_scenes", [1, 5, 7, 100])
+def test_moments_are_cut_between_egos(max_scenes: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evidence, "SCENES_PER_STATEMENT", max_scenes)
     counts = [(1, 3), (2, 2), (3, 9), (4, 1), (5, 1)]
     runs = list(evidence._groups_of_egos(counts))
     assert [ego for first, end in runs for ego in range(first, end)] == [1, 2, 3, 4, 5]
-    assert all(end - first == 1 or sum(n for ego, n in counts if first <= ego < end) <= most for first, end in runs)
+    assert all(
+        end - first == 1 or sum(n for ego, n in counts if first <= ego < end) <= max_scenes for first, end in runs
+    )
     assert list(evidence._groups_of_egos([])) == []

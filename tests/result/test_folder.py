@@ -19,7 +19,7 @@ from tests.report.synthetic import drive, result, verdict
 pytestmark = pytest.mark.ci
 
 
-def checked(out: Path, *drives: str, overwrite: bool = False, **grown: bytes) -> None:
+def write_run(out: Path, *drives: str, overwrite: bool = False, **grown: bytes) -> None:
     """Write what a run of these drives would, each with its annotated log; `grown`: other files that grew during the run."""
     with working_folder(out, overwrite=overwrite) as work:
         assert work is not None
@@ -37,10 +37,10 @@ def names(out: Path) -> set[str]:
 
 
 def test_what_an_earlier_run_wrote_and_this_one_does_not_goes(tmp_path: Path) -> None:
-    checked(tmp_path, "a", "b", drivelint_duckdb=b"tables")
+    write_run(tmp_path, "a", "b", drivelint_duckdb=b"tables")
     folder.add_file(tmp_path, "report.md", b"of the first run")
     assert {"annotated/a.mcap", "annotated/b.mcap", "drivelint.duckdb", "report.md"} <= names(tmp_path)
-    checked(tmp_path, "b")
+    write_run(tmp_path, "b")
     assert not names(tmp_path) & {"annotated/a.mcap", "drivelint.duckdb", "report.md"}
     assert "annotated/b.mcap" in names(tmp_path)
     written = json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))["written_by_drivelint"]
@@ -48,7 +48,7 @@ def test_what_an_earlier_run_wrote_and_this_one_does_not_goes(tmp_path: Path) ->
 
 
 def test_foreign_files_stay_whatever_their_folder_is(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / "annotated" / "notes.txt").write_text("mine")
     with working_folder(tmp_path) as work:
@@ -64,20 +64,20 @@ def test_a_foreign_file_of_such_a_name_is_not_overwritten_unasked(tmp_path: Path
     if name == MANIFEST:
         (tmp_path / "summary.json").write_text("mine")
     with pytest.raises(UsageError, match="--overwrite"):
-        checked(tmp_path, "a")
+        write_run(tmp_path, "a")
     assert (tmp_path / name).read_text() == "mine"
-    checked(tmp_path, "a", overwrite=True)
+    write_run(tmp_path, "a", overwrite=True)
     assert "annotated/mine.mcap" not in names(tmp_path)
     assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["a"]
 
 
 def test_a_list_of_files_elsewhere_removes_nothing(tmp_path: Path) -> None:
     out, other = tmp_path / "out", tmp_path / "other.mcap"
-    checked(out, "a")
+    write_run(out, "a")
     other.write_text("mine")
     said = {"written_by_drivelint": ["../other.mcap", "annotated/../../other.mcap", str(other), *names(out)]}
     (out / MANIFEST).write_text(json.dumps(said))
-    checked(out, "b")
+    write_run(out, "b")
     assert other.read_text() == "mine"
 
 
@@ -93,7 +93,7 @@ def interrupted(out: Path) -> None:
 
 
 def test_an_earlier_result_is_whole_elsewhere_after_a_run_that_ends_early(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     folder.add_file(tmp_path, "report.md", b"of the first run")
     (tmp_path / "notes.txt").write_text("mine")
     before = {name: (tmp_path / name).read_bytes() for name in names(tmp_path) - REPORTS - {"notes.txt"}}
@@ -104,18 +104,18 @@ def test_an_earlier_result_is_whole_elsewhere_after_a_run_that_ends_early(tmp_pa
     assert load_result(earlier).drives["drive_id"].to_pylist() == ["a"]
     interrupted(tmp_path)  # once more: the last result stays
     assert load_result(earlier).drives["drive_id"].to_pylist() == ["a"]
-    checked(tmp_path, "b")
+    write_run(tmp_path, "b")
     interrupted(tmp_path)
     assert load_result(earlier).drives["drive_id"].to_pylist() == ["b"]
     (earlier / "notes.txt").write_text("mine")
-    checked(tmp_path, "c")
+    write_run(tmp_path, "c")
     assert {name for name in names(tmp_path) if name.startswith(folder.EARLIER_RESULT_FOLDER)} == {
         f"{folder.EARLIER_RESULT_FOLDER}/notes.txt"
     }
 
 
 def test_a_result_that_the_failed_run_wrote_itself_stays(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     with suppress(TraceError), working_folder(tmp_path) as work:
         write(result([verdict("pass", drive_id="b")], drives=[drive("b")]), tmp_path, work)
         raise TraceError("no drive could be judged")
@@ -126,23 +126,23 @@ def test_a_result_that_the_failed_run_wrote_itself_stays(tmp_path: Path) -> None
 def test_what_a_killed_run_left_goes_with_the_next(tmp_path: Path) -> None:
     (tmp_path / ".drivelint.work.1").mkdir()
     (tmp_path / ".drivelint.work.1" / "drivelint.duckdb").write_bytes(b"half")
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     assert not [name for name in names(tmp_path) if name.startswith(".")]
 
 
 def test_a_result_that_a_killed_run_was_to_replace_is_not_read(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     left = tmp_path / ".drivelint.work.1"
     left.mkdir()
     with pytest.raises(UsageError, match="of an earlier run") as refused:
         load_result(tmp_path)
     assert str(left) in str(refused.value)
-    checked(tmp_path, "b")
+    write_run(tmp_path, "b")
     assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["b"]
 
 
 def test_while_a_run_goes_on_the_result_before_it_can_be_read(tmp_path: Path) -> None:
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
     with working_folder(tmp_path):
         assert load_result(tmp_path).drives["drive_id"].to_pylist() == ["a"]
 
@@ -152,9 +152,9 @@ def test_two_runs_at_a_time_into_one_folder_are_refused(tmp_path: Path) -> None:
         assert work is not None
         (work / "drivelint.duckdb").write_bytes(b"half")
         with pytest.raises(UsageError, match="another check is writing there"):
-            checked(tmp_path, "a")
+            write_run(tmp_path, "a")
         assert (work / "drivelint.duckdb").read_bytes() == b"half"
-    checked(tmp_path, "a")
+    write_run(tmp_path, "a")
 
 
 @pytest.mark.parametrize("n", range(1, 60, 4))
@@ -162,7 +162,7 @@ def test_a_machine_that_fails_while_files_are_replaced_leaves_no_half_result(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, n: int
 ) -> None:
     """After any number of renames: the old result, the new one, or what is refused; and the next run makes it whole."""
-    checked(tmp_path, "a", "b")
+    write_run(tmp_path, "a", "b")
     done: list[Path] = []
     rename = Path.replace
 
@@ -174,14 +174,14 @@ def test_a_machine_that_fails_while_files_are_replaced_leaves_no_half_result(
 
     monkeypatch.setattr(Path, "replace", failing)
     with suppress(OutputError):
-        checked(tmp_path, "c")
+        write_run(tmp_path, "c")
     monkeypatch.setattr(Path, "replace", rename)
     if (tmp_path / "summary.json").exists():
         assert load_result(tmp_path).drives["drive_id"].to_pylist() in (["a", "b"], ["c"])
     else:
         with pytest.raises(UsageError, match=r"summary\.json is missing"):
             load_result(tmp_path)
-    checked(tmp_path, "d")
+    write_run(tmp_path, "d")
     assert {name for name in names(tmp_path) if name.startswith("annotated")} == {"annotated/d.mcap"}
 
 

@@ -49,7 +49,7 @@ def folder(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def opened(path: Path) -> Any:
+def geo_frame(path: Path) -> Any:
     """Return a file as geopandas reads it, which imports pandas."""
     import geopandas
 
@@ -59,7 +59,7 @@ def opened(path: Path) -> Any:
 @pytest.mark.parametrize("stem", FILES)
 def test_geopandas_and_duckdb_read_the_same_valid_geometry(folder: Path, stem: str) -> None:
     path = folder / f"{stem}.parquet"
-    frame = opened(path)
+    frame = geo_frame(path)
     assert frame.crs is None
     assert set(frame.geom_type) == {FILES[stem].kind}
     assert len(frame) > 0
@@ -99,7 +99,7 @@ def test_duckdb_forgets_that_there_is_no_reference(folder: Path, tmp_path: Path)
         con.execute(f"COPY ({sql}) TO '{moved}' (FORMAT parquet)")
     for path in (metres, moved):
         assert "crs" not in written_crs(path)
-        assert opened(path).crs.equals("OGC:CRS84")
+        assert geo_frame(path).crs.equals("OGC:CRS84")
 
 
 def test_what_duckdb_writes_has_no_geometry() -> None:
@@ -119,7 +119,7 @@ def test_a_table_without_rows_is_read(stem: str, tmp_path: Path) -> None:
     path = tmp_path / "empty.parquet"
     table = TABLE_OF_FILE[stem]
     path.write_bytes(parquet_bytes(empty_table(table), table))
-    assert len(opened(path)) == 0
+    assert len(geo_frame(path)) == 0
 
 
 def test_a_result_comes_back_without_the_geometry(result: Result, folder: Path) -> None:
@@ -130,7 +130,7 @@ def test_a_result_comes_back_without_the_geometry(result: Result, folder: Path) 
 
 def test_the_shapes_are_what_the_columns_say(folder: Path) -> None:
     """Boxes by turning and moving a rectangle; lanes as wide as the road's 5.5 m or less; spaces as long as they say."""
-    scenes = opened(folder / "scenes.parquet")
+    scenes = geo_frame(folder / "scenes.parquet")
     for scene in scenes.itertuples():
         boxes = []
         for actor in scene.actors:
@@ -138,20 +138,20 @@ def test_the_shapes_are_what_the_columns_say(folder: Path) -> None:
             flat = affinity.rotate(shapely.box(-half[0], -half[1], *half), actor["yaw_rad"], (0, 0), use_radians=True)
             boxes.append(affinity.translate(flat, actor["x_m"], actor["y_m"]))
         assert shapely.hausdorff_distance(shapely.union_all(boxes), scene.geom) < 0.001
-    for lane in opened(folder / "lanes.parquet").itertuples():
+    for lane in geo_frame(folder / "lanes.parquet").itertuples():
         ends = shapely.points([(lane.left_x_m[0], lane.left_y_m[0]), (lane.right_x_m[-1], lane.right_y_m[-1])])
         assert shapely.distance(lane.geom.boundary, ends).max() == 0
         left, right = (
             shapely.linestrings(x, y) for x, y in ((lane.left_x_m, lane.left_y_m), (lane.right_x_m, lane.right_y_m))
         )
         assert lane.geom.area == pytest.approx(shapely.distance(left, right) * left.length, rel=0.01)
-    for space in opened(folder / "spaces.parquet").itertuples():
+    for space in geo_frame(folder / "spaces.parquet").itertuples():
         length, width = space.length_m, space.geom.area / space.length_m
         assert space.geom.length == pytest.approx(2 * (length + width), rel=0.02)
 
 
 def test_tracks_are_those_of_egos_and_of_the_others_of_findings(result: Result, folder: Path) -> None:
-    tracks = opened(folder / "tracks.parquet")
+    tracks = geo_frame(folder / "tracks.parquet")
     told = {(row["drive_id"], row["object_id"]) for row in result.findings.to_pylist() if row["object_id"]}
     told |= {
         (row["drive_id"], row["object_id"])
@@ -199,7 +199,7 @@ def test_places_on_the_earth_are_said_to_be_so(result: Result, stem: str, primar
     placed = replace_columns(rows, {"lon": lon, "lat": lat})
     path = tmp_path / "placed.parquet"
     path.write_bytes(parquet_bytes(placed, table))
-    frame = opened(path)
+    frame = geo_frame(path)
     assert frame.geometry.name == primary
     assert frame["geom_lonlat"].crs.equals("OGC:CRS84")
     assert [(each.x, each.y) for each in frame["geom_lonlat"][:-1]] == list(zip(lon, lat, strict=True))[:-1]

@@ -15,7 +15,7 @@ from drivelint.result.model import Result, exit_status
 from drivelint.result.schemas import empty_table
 from tests.report.synthetic import SDA, drive, result, rule, verdict
 
-LOST = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
+UNJUDGED_DRIVE = drive("d2", status="not_judged", status_reason="d2.csv: no ego")
 LOSSY = drive(lossy=True)
 
 
@@ -28,17 +28,19 @@ LOSSY = drive(lossy=True)
         pytest.param(["fail"], None, {"fail_on": "never"}, ExitCode.OK, id="failures never gate"),
         pytest.param(["pass", "unknown"], None, {"strict": True}, ExitCode.NOT_JUDGED, id="strict: unknown"),
         pytest.param(["pass"], None, {"strict": True}, ExitCode.OK, id="strict: all kept"),
-        pytest.param(["pass"], [drive(), LOST], {}, ExitCode.NOT_JUDGED, id="a drive was not judged"),
+        pytest.param(["pass"], [drive(), UNJUDGED_DRIVE], {}, ExitCode.NOT_JUDGED, id="a drive was not judged"),
         pytest.param(["pass"], [LOSSY], {}, ExitCode.LOSSY, id="lossy input"),
-        pytest.param(["pass"], [LOSSY, LOST], {}, ExitCode.NOT_JUDGED, id="4 before 3"),
-        pytest.param(["fail"], [LOSSY, LOST], {}, ExitCode.FAILED, id="1 before 4"),
-        pytest.param(["fail", "error"], [LOSSY, LOST], {}, ExitCode.USAGE, id="2 before 1"),
+        pytest.param(["pass"], [LOSSY, UNJUDGED_DRIVE], {}, ExitCode.NOT_JUDGED, id="4 before 3"),
+        pytest.param(["fail"], [LOSSY, UNJUDGED_DRIVE], {}, ExitCode.FAILED, id="1 before 4"),
+        pytest.param(["fail", "error"], [LOSSY, UNJUDGED_DRIVE], {}, ExitCode.USAGE, id="2 before 1"),
         pytest.param(["unknown"], [LOSSY], {"strict": True}, ExitCode.NOT_JUDGED, id="strict unknown before 3"),
-        pytest.param([], [drive(), LOST], {}, ExitCode.NOT_JUDGED, id="no verdict at all"),
+        pytest.param([], [drive(), UNJUDGED_DRIVE], {}, ExitCode.NOT_JUDGED, id="no verdict at all"),
         pytest.param(["pass", "unknown"], None, {"required": (SDA,)}, ExitCode.NOT_JUDGED, id="required: unknown"),
         pytest.param(["pass", "unknown"], None, {"required": ("ukhc.other",)}, ExitCode.OK, id="another is required"),
         pytest.param(["fail", "unknown"], None, {"required": (SDA,)}, ExitCode.FAILED, id="1 before required unknown"),
-        pytest.param(["error"], [drive(), LOST], {"interrupted": True}, ExitCode.INTERRUPTED, id="130 before all"),
+        pytest.param(
+            ["error"], [drive(), UNJUDGED_DRIVE], {"interrupted": True}, ExitCode.INTERRUPTED, id="130 before all"
+        ),
     ],
 )
 def test_exit_code(
@@ -59,7 +61,7 @@ def test_what_is_unknown_and_may_not_be_is_counted_by_rule() -> None:
     ("drives", "settings", "also"),
     [
         (None, {"required": (SDA,)}, f"1 verdict of required rules unknown (--require): 1 of {SDA}"),
-        ([drive(), LOST], {}, "1 of 2 drives could not be judged"),
+        ([drive(), UNJUDGED_DRIVE], {}, "1 of 2 drives could not be judged"),
     ],
 )
 def test_a_failure_does_not_hide_what_was_not_judged(
@@ -73,7 +75,7 @@ def test_a_failure_does_not_hide_what_was_not_judged(
 
 
 def test_an_interrupted_run_says_how_far_it_came() -> None:
-    run = result([verdict("fail")], drives=[drive(), LOST, drive("d3")], interrupted=True)
+    run = result([verdict("fail")], drives=[drive(), UNJUDGED_DRIVE, drive("d3")], interrupted=True)
     assert exit_status(run).why == "partial: 2 of 3 drives judged, interrupted"
 
 

@@ -236,7 +236,7 @@ def test_a_run_puts_findings_and_the_drive_on_the_earth(tmp_path: Path) -> None:
     assert metres_apart((found["lon"], found["lat"]), expected) < 1.0
     (drive,) = result.drives.to_pylist()
     assert 49.0 < drive["lat"] < found["lat"]
-    links = [link for link in Parsed(page(result)).all("href") if link and link.startswith("https:")]
+    links = [link for link in Parsed(page(result)).values("href") if link and link.startswith("https:")]
     place = f"{found['lat']:.6f}/{found['lon']:.6f}"
     assert links
     assert links[0] == f"https://www.openstreetmap.org/?mlat={place.replace('/', '&mlon=')}#map=18/{place}"

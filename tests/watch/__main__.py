@@ -24,7 +24,7 @@ from tests.demo.scenes import all_scenes
 from tests.false_alarms.count import REAL
 from tests.shared_data import DATA, ROOT
 
-from .prefixes import told, watch
+from .prefixes import finding_keys, watch
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -75,9 +75,9 @@ def law(names: list[str]) -> int:
         print(f"{name}: {_in_words(counts)}; {time.perf_counter() - begun_s:.0f} s", flush=True)
         for kind, rows in (
             ("refused", sorted(set(refused))),
-            ("withdrawn", told([alarm.row for alarm in watched.withdrawn])),
-            ("false", told([alarm.row for alarm in watched.false])),
-            ("missed", told(watched.missed)),
+            ("withdrawn", finding_keys([alarm.row for alarm in watched.withdrawn])),
+            ("false", finding_keys([alarm.row for alarm in watched.false])),
+            ("missed", finding_keys(watched.missed)),
             ("revised", watched.revised),
         ):
             for row in rows:

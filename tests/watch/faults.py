@@ -47,7 +47,7 @@ class Fault(NamedTuple):
     """`faulty`: what the vType of the faulty driver is told; `sound`: the same for a driver without the fault.
 
     `rule`: the rule that breaks, `severity`: its severity. `at_once`: the first failing step is enough to know it; else the rule waits for
-    what comes after. `other`: what the vType of everybody else is told.
+    what comes after. `others_type`: what the vType of everybody else is told.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Fault(NamedTuple):
     cars: tuple[Car, ...]
     end_s: int
     sound: str = EXACT
-    other: str = EXACT
+    others_type: str = EXACT
     at_once: bool = True
 
 
@@ -74,7 +74,7 @@ FAULTS = (
     Fault(
         "too-close", "road", "ukhc.r126.thinking-gap", "critical", f'{EXACT} tau="0.1" minGap="0.5" lcOpposite="0"',
         (Car("lead", 0, "ab"), Car("ego", 6, "ab", "driver")), 25,
-        sound=f'{EXACT} lcOpposite="0"', other=f'{SIZE} maxSpeed="15"',
+        sound=f'{EXACT} lcOpposite="0"', others_type=f'{SIZE} maxSpeed="15"',
     ),
     Fault(
         "rear-end", "road", "ukhc.no-collision", "critical",
@@ -83,7 +83,7 @@ FAULTS = (
             Car("lead", 0, "ab", stop='<stop lane="ab_0" endPos="250" duration="30"/>'),
             Car("ego", 2, "ab", "driver"),
         ), 30,
-        sound=f'{SIZE} maxSpeed="18" lcOpposite="0"', other=f'{SIZE} maxSpeed="18" decel="9" emergencyDecel="9"',
+        sound=f'{SIZE} maxSpeed="18" lcOpposite="0"', others_type=f'{SIZE} maxSpeed="18" decel="9" emergencyDecel="9"',
     ),
     Fault(
         "turn-across", "crossroads", "ukhc.r180.right-turn-gap", "critical", f"{EXACT} {_IGNORES}",
@@ -129,7 +129,7 @@ def build(folder: Path) -> None:
 def write(folder: Path, fault: Fault, driver: str) -> Scenario:
     """Write a fault's scenario with a driver, in a place that `build` made."""
     name = f"{fault.name}-{'faulty' if driver == fault.faulty else 'sound'}"
-    types = {"driver": driver, "other": fault.other, "lorry": LORRY}
+    types = {"driver": driver, "other": fault.others_type, "lorry": LORRY}
     told = (f'<vType id="{kind}" {said}/>' for kind, said in types.items())
     return scenario(folder / fault.place, name, [*told, *map(_vehicle, fault.cars)], fault.end_s)
 
@@ -161,16 +161,18 @@ def scenario(place: Path, name: str, traffic: Sequence[str], end_s: int) -> Scen
     return Scenario(config, routes, place / road)
 
 
-def simulate(made: Scenario) -> Path:
+def simulate(scenario_files: Scenario) -> Path:
     """Let SUMO alone simulate a scenario; return its floating car data."""
-    name = made.config.stem
-    more = made.config.with_name(f"{name}.add.xml")
+    name = scenario_files.config.stem
+    more = scenario_files.config.with_name(f"{name}.add.xml")
     lights = f'<timedEvent type="SaveTLSStates" source="c" dest="{name}.tls.xml"/>'
-    more.write_text(f"<additional>{lights if made.config.parent.name == 'crossroads' else ''}</additional>", "utf-8")
-    log = made.config.with_name(f"{name}.fcd.xml")
+    more.write_text(
+        f"<additional>{lights if scenario_files.config.parent.name == 'crossroads' else ''}</additional>", "utf-8"
+    )
+    log = scenario_files.config.with_name(f"{name}.fcd.xml")
     world.run(
-        "sumo", "-c", str(made.config), "-a", str(more), "--fcd-output", str(log), "--fcd-output.signals",
-        "--fcd-output.acceleration", "--precision", "4", "--no-step-log", cwd=made.config.parent,
+        "sumo", "-c", str(scenario_files.config), "-a", str(more), "--fcd-output", str(log), "--fcd-output.signals",
+        "--fcd-output.acceleration", "--precision", "4", "--no-step-log", cwd=scenario_files.config.parent,
     )  # fmt: skip
     return log
 

@@ -51,7 +51,7 @@ class WatchOutcome:
         return [alarm for alarm in self.alarms if alarm.withdrawn_ns is not None]
 
 
-class Made(NamedTuple):
+class ReplayedWindow(NamedTuple):
     """A window of a replayed log, whether it begins where the log does, and the newest steps, which are looked at before it is judged."""
 
     trace: Trace
@@ -59,7 +59,7 @@ class Made(NamedTuple):
     latest: Trace
 
 
-def windows_of(options: WatchOptions, folder: Path) -> list[Made]:
+def windows_of(options: WatchOptions, folder: Path) -> list[ReplayedWindow]:
     """Return each window of a replayed log."""
     every_ns = round(options.every_s * NS_PER_S)
     source = Replay(folder / options.source, options.ingest_options(), speed=0, every_ns=every_ns)
@@ -72,7 +72,7 @@ def windows_of(options: WatchOptions, folder: Path) -> list[Made]:
             latest = source.latest_trace(
                 window.frames_since(frames[0].t_ns - contact.LEAST_EXAMINED_LOG_SPAN_NS), folder, ingest
             )
-            found.append(Made(source.window_reader(window.frames, folder, ingest)(), window.is_whole, latest))
+            found.append(ReplayedWindow(source.window_reader(window.frames, folder, ingest)(), window.is_whole, latest))
     return found
 
 
@@ -100,14 +100,14 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> WatchOut
                 settled.new_settled_rows(each, each.t_start_ns if from_ns is None else from_ns + WARM_UP_NS)
                 alarms.add_window(each, until, from_ns)
                 until = each.t_end_ns
-    result = run.check(checked(options, folder), Silent())
+    result = run.check(check_options(options, folder), Silent())
     findings = result.findings.to_pylist()
     missed = alarms.assign_findings_and_return_unassigned(findings, result.verdicts)
     _, revised = settled.late_and_revised_rows(result.verdicts)
     return WatchOutcome(alarms.alarms, missed, findings, judged, len(settled), revised)
 
 
-def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
+def check_options(options: WatchOptions, folder: Path) -> run.CheckOptions:
     """Return the options with which `check` judges the same log."""
     same = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
     return run.CheckOptions(
@@ -115,6 +115,6 @@ def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
     )
 
 
-def told(rows: Sequence[Row]) -> list[tuple[str, str | None, str | None, float]]:
+def finding_keys(rows: Sequence[Row]) -> list[tuple[str, str | None, str | None, float]]:
     """Return rule, profile, object and start of findings, for a message."""
     return [(r["rule_id"], r["profile"], r["object_id"], round(r["t_start_ns"] / NS_PER_S, 2)) for r in rows]

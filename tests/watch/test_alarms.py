@@ -15,7 +15,7 @@ from drivelint.watch.options import WatchOptions
 from drivelint.watch.window import NS_PER_S
 from tests.demo.scenes import all_scenes
 from tests.shared_data import ROOT
-from tests.watch.prefixes import told, watch
+from tests.watch.prefixes import finding_keys, watch
 
 FOLDER = ROOT / "fixtures" / "scenes"
 SCENES = {scene.name: scene.map_name for scene in all_scenes()}
@@ -35,8 +35,8 @@ def test_alarms_are_the_findings(name: str) -> None:
     options = WatchOptions(source=f"{name}.mcap", map=FOLDER / f"{SCENES[name]}.xodr", every_s=0.5)
     watched = watch(options, FOLDER)
     assert [each for each in watched.windows if isinstance(each, Exception)] == []
-    assert (told([alarm.row for alarm in watched.false]), told(watched.missed)) == ([], [])
-    assert told(watched.revised) == []
+    assert (finding_keys([alarm.row for alarm in watched.false]), finding_keys(watched.missed)) == ([], [])
+    assert finding_keys(watched.revised) == []
     assert name not in BY_CI or watched.alarms
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import IngestOptions, Trace
 
-KNOWN = catalogue.load_rules(())
+CATALOGUE = catalogue.load_rules(())
 WAY = road()
 T = times(10.0)
 SCENES = Path(__file__).parents[2] / "fixtures" / "scenes"
@@ -47,7 +47,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 @pytest.fixture
 def look(con: duckdb.DuckDBPyConnection) -> ContactFinder:
-    return ContactFinder(con, KNOWN)
+    return ContactFinder(con, CATALOGUE)
 
 
 def ego(lateral: float = 0.0) -> Actor:
@@ -67,13 +67,15 @@ def with_column(log: Trace, table: str, column: str, values: list[Any]) -> Trace
 def overlaps(a: Actor, b: Actor) -> set[int]:
     """The steps at which two boxes overlap, by shapely."""
 
-    def placed(each: Actor, k: int) -> Any:
-        assert each.length
-        assert each.width
-        lying = box(-each.length / 2, -each.width / 2, each.length / 2, each.width / 2)
-        return affinity.translate(affinity.rotate(lying, each.yaw[k], (0, 0), use_radians=True), each.x[k], each.y[k])
+    def outline(actor: Actor, k: int) -> Any:
+        assert actor.length
+        assert actor.width
+        lying = box(-actor.length / 2, -actor.width / 2, actor.length / 2, actor.width / 2)
+        return affinity.translate(
+            affinity.rotate(lying, actor.yaw[k], (0, 0), use_radians=True), actor.x[k], actor.y[k]
+        )
 
-    return {round(a.t_s[k] * NS_PER_S) for k in range(len(a.t_s)) if placed(a, k).intersects(placed(b, k))}
+    return {round(a.t_s[k] * NS_PER_S) for k in range(len(a.t_s)) if outline(a, k).intersects(outline(b, k))}
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.6, 2.2])
@@ -128,11 +130,13 @@ def test_a_jolt_is_told_where_the_boxes_are_near(
 
 
 @pytest.mark.parametrize(
-    ("speed_mps", "kind", "told"), [(8.0, "car", True), (2.9, "pedestrian", False), (3.1, "pedestrian", True)]
+    ("speed_mps", "kind", "is_jolt"), [(8.0, "car", True), (2.9, "pedestrian", False), (3.1, "pedestrian", True)]
 )
-def test_who_is_struck_gains_speed(look: ContactFinder, speed_mps: float, kind: str, *, told: bool) -> None:
+def test_who_is_struck_gains_speed(look: ContactFinder, speed_mps: float, kind: str, *, is_jolt: bool) -> None:
     gains = replace(STRUCK, vx=np.where(T < 5.0, 0.0, speed_mps), kind=kind)
-    assert jolts(look, trace(ends_at(0.3, loss_mps=0.5), gains)) == ([(5.0, round(10 * speed_mps, 6))] if told else [])
+    assert jolts(look, trace(ends_at(0.3, loss_mps=0.5), gains)) == (
+        [(5.0, round(10 * speed_mps, 6))] if is_jolt else []
+    )
 
 
 def test_a_jolt_waits_for_the_window_if_the_velocity_is_derived(look: ContactFinder) -> None:
@@ -158,9 +162,14 @@ def test_an_actor_that_was_always_near_may_be_towed(look: ContactFinder) -> None
 
 def test_only_rules_that_are_asked_for_are_told(con: duckdb.DuckDBPyConnection) -> None:
     log = trace(ends_at(-0.2), STRUCK)
-    assert {row["rule_id"] for row in ContactFinder(con, KNOWN).new_contacts(log, None)} == {OVERLAP_RULE, JOLT_RULE}
-    assert {row["rule_id"] for row in ContactFinder(con, KNOWN, (JOLT_RULE,)).new_contacts(log, None)} == {JOLT_RULE}
-    assert ContactFinder(con, KNOWN, (JOLT_RULE,), {JOLT_RULE: {"tyre_mps2": 101.0}}).new_contacts(log, None) == []
+    assert {row["rule_id"] for row in ContactFinder(con, CATALOGUE).new_contacts(log, None)} == {
+        OVERLAP_RULE,
+        JOLT_RULE,
+    }
+    assert {row["rule_id"] for row in ContactFinder(con, CATALOGUE, (JOLT_RULE,)).new_contacts(log, None)} == {
+        JOLT_RULE
+    }
+    assert ContactFinder(con, CATALOGUE, (JOLT_RULE,), {JOLT_RULE: {"tyre_mps2": 101.0}}).new_contacts(log, None) == []
 
 
 def test_steps_that_were_looked_at_are_not_told_again(look: ContactFinder) -> None:
@@ -183,7 +192,7 @@ def test_a_contact_that_lasts_is_told_by_the_looks_after_it(
     assert look.new_contacts(part_of(log, 0.0, 3.0), None) == []
     late = part_of(log, 8.0, 9.0)
     assert [row["t_start_ns"] for row in look.new_contacts(late, round(8.9 * NS_PER_S))] == [9 * NS_PER_S]
-    assert ContactFinder(con, KNOWN).new_contacts(late, None) == []  # it has not seen the two apart
+    assert ContactFinder(con, CATALOGUE).new_contacts(late, None) == []  # it has not seen the two apart
 
 
 def part_of(log: Trace, from_s: float, to_s: float) -> Trace:

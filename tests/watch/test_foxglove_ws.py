@@ -111,11 +111,11 @@ def test_channels_that_nobody_reads_are_told(tmp_path: Path) -> None:
     source = foxglove_ws.open(f"ws://127.0.0.1:{server.port}", tmp_path)
     found: list[str] = []
 
-    def told() -> bool:
+    def has_notes() -> bool:
         found.extend(source.notes())
         return bool(found)
 
-    until(told)
+    until(has_notes)
     assert "/camera" in found[0]
     assert not channel.has_sinks()
     server.stop()
@@ -149,12 +149,12 @@ def test_a_server_that_is_not_up_yet_is_waited_for(tmp_path: Path) -> None:
     source = foxglove_ws.open(uri, tmp_path, idle_s=10.0)
     found: list[str] = []
 
-    def told() -> bool:
+    def has_notes() -> bool:
         assert source.read(0.05) == []
         found.extend(source.notes())
         return bool(found)
 
-    until(told)
+    until(has_notes)
     with player(COLLISION, port) as server:
         playing = threading.Thread(target=server.play)
         playing.start()

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 OTHER_THAN_BY_DEFAULT: dict[type, Any] = {str: "x", float: 7.5, int: 7, tuple: ("x",), type(None): "x"}
-KNOWN = catalogue.load_rules(())
+CATALOGUE = catalogue.load_rules(())
 RULE = "ukhc.r126.two-second"
 PYTHON = sys.executable
 LIMITS = "it starts at most once in 1 s, and 4 run at a time"
@@ -88,7 +88,7 @@ def test_a_program_that_is_not_there() -> None:
 
 
 def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
-    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
+    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], CATALOGUE, CATALOGUE)
     for _ in range(5):
         assert trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) is None
     assert trigger.run_for_alarms_and_return_note([{"rule_id": "another"}]) is None
@@ -97,7 +97,7 @@ def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
 
 
 def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
-    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
+    (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], CATALOGUE, CATALOGUE)
     told = [trigger.run_for_alarms_and_return_note([{"rule_id": RULE}] * 2) for _ in range(3)]
     trigger._last_s -= triggers.LEAST_PAUSE_BETWEEN_STARTS_S
     told += [trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]), trigger.note_on_left_out_alarms()]
@@ -108,21 +108,21 @@ def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_
 
 
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
-    (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
+    (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], CATALOGUE, CATALOGUE)
     assert trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) is None
     trigger.wait_for_running_commands()
     assert not (tmp_path / "b").exists()
 
 
 def test_a_command_that_is_not_there_is_told() -> None:
-    (trigger,) = triggers.parse([f"{RULE}=no-such-program"], KNOWN, KNOWN)
+    (trigger,) = triggers.parse([f"{RULE}=no-such-program"], CATALOGUE, CATALOGUE)
     assert "no-such-program: cannot be started" in (trigger.run_for_alarms_and_return_note([{"rule_id": RULE}]) or "")
 
 
 @pytest.mark.parametrize("text", ["true", "=true", f"{RULE}=", f"{RULE}='"])
 def test_a_trigger_that_cannot_be_read(text: str) -> None:
     with pytest.raises(UsageError, match="--on"):
-        triggers.parse([text], KNOWN, KNOWN)
+        triggers.parse([text], CATALOGUE, CATALOGUE)
 
 
 def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
@@ -148,26 +148,26 @@ def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
 
 
 def test_a_margin_that_shrinks_is_told_once_with_the_time_that_is_left() -> None:
-    edge = KNOWN[RULE].near_margin
+    edge = CATALOGUE[RULE].near_margin
     assert edge is not None
     shrinking, falling = ShrinkingMargins(), [edge * share for share in (0.9, 0.8, 0.7, 0.6, 0.5)]
-    (message,) = shrinking.new_messages(near(falling), KNOWN, 0)
+    (message,) = shrinking.new_messages(near(falling), CATALOGUE, 0)
     assert message["shrinks_per_s"] == pytest.approx(edge)
     assert message["to_violation_s"] == pytest.approx(0.5)
     assert (message["t_s"], message["object_id"]) == (10.0, "2")
-    assert shrinking.new_messages(near(falling), KNOWN, 0) == []
-    assert shrinking.new_messages(near([edge * 2] * 5), KNOWN, 0) == []
-    assert len(shrinking.new_messages(near(falling), KNOWN, 0)) == 1
+    assert shrinking.new_messages(near(falling), CATALOGUE, 0) == []
+    assert shrinking.new_messages(near([edge * 2] * 5), CATALOGUE, 0) == []
+    assert len(shrinking.new_messages(near(falling), CATALOGUE, 0)) == 1
 
 
 def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
-    edge = KNOWN[RULE].near_margin or 0.0
+    edge = CATALOGUE[RULE].near_margin or 0.0
     for window in (
         near([edge * 0.5, edge * 0.6, edge * 0.7]),
         near([edge * 0.6, edge * 0.5], end_s=8.0),
         near([-1.0, -2.0]),
     ):
-        assert ShrinkingMargins().new_messages(window, KNOWN, 0) == []
+        assert ShrinkingMargins().new_messages(window, CATALOGUE, 0) == []
 
 
 def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:

@@ -21,7 +21,7 @@ from drivelint.watch.sources import sumo
 from drivelint.watch.window import NS_PER_S
 from tests.sumo import world
 from tests.watch import faults
-from tests.watch.prefixes import told, watch
+from tests.watch.prefixes import finding_keys, watch
 from tests.watch.sumo_processes import processes
 
 if TYPE_CHECKING:
@@ -54,29 +54,29 @@ def places(tmp_path_factory: pytest.TempPathFactory) -> Path:
 class Live(NamedTuple):
     """What came of a watch: what was said, the alarms, the one that halted, the last step that was recorded, and its check."""
 
-    said: list[dict[str, Any]]
+    messages: list[dict[str, Any]]
     alarms: list[Alarm]
     halted: Alarm | None
     last_ns: int
     result: Result
 
     def of_type(self, kind: str) -> list[dict[str, Any]]:
-        return [each for each in self.said if each["type"] == kind]
+        return [each for each in self.messages if each["type"] == kind]
 
 
-def live(made: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float = EVERY_S) -> Live:
+def live(scenario: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float = EVERY_S) -> Live:
     """Watch a scenario while SUMO simulates it."""
     options = WatchOptions(
-        source=str(made.config), map=made.map, ego="ego", rules=rules, halt_on=halt_on, every_s=every_s,
+        source=str(scenario.config), map=scenario.map, ego="ego", rules=rules, halt_on=halt_on, every_s=every_s,
         robustness=False,
     )  # fmt: skip
-    said: list[dict[str, Any]] = []
+    messages: list[dict[str, Any]] = []
     interruption = Interruption()
     source = sumo.open(options.source, folder, span_s=every_s)
     try:
-        with Watch(options, source, said.append, interruption) as watching:
+        with Watch(options, source, messages.append, interruption) as watching:
             halted = watching.watch().halted
-            assert halted is None or not processes(str(made.config))
+            assert halted is None or not processes(str(scenario.config))
             source.close()
             result = check_recording(
                 options, source.recording, None, watching, folder=folder, progress=Silent(), interruption=interruption
@@ -85,22 +85,22 @@ def live(made: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float
     finally:
         source.close()
     times = read_trace(source.recording, IngestOptions(ego="ego")).tables["actor_state"]["t_ns"].to_numpy()
-    return Live(said, watching.alarms.alarms, halted, int(times.max()), result)
+    return Live(messages, watching.alarms.alarms, halted, int(times.max()), result)
 
 
-def finding(log: Path, made: Scenario, rule: str) -> Row:
+def finding(log: Path, scenario: Scenario, rule: str) -> Row:
     """Return the first finding of `check` in the log that SUMO alone writes."""
     asked = run.CheckOptions(
-        traces=(str(log),), map=made.map, ego="ego", rules=(rule,), mapping=str(made.routes), robustness=False
+        traces=(str(log),), map=scenario.map, ego="ego", rules=(rule,), mapping=str(scenario.routes), robustness=False
     )
     return min(run.check(asked, Silent()).findings.to_pylist(), key=lambda row: int(row["t_start_ns"]))
 
 
-def known_ns(log: Path, made: Scenario, rule: str, from_ns: int, until_ns: int) -> int:
+def known_ns(log: Path, scenario: Scenario, rule: str, from_ns: int, until_ns: int) -> int:
     """Return the first step with which the log is long enough to have a finding of a rule."""
-    trace = read_trace(log, IngestOptions(ego="ego", mapping=str(made.routes)))
+    trace = read_trace(log, IngestOptions(ego="ego", mapping=str(scenario.routes)))
     ends = range(from_ns, until_ns + 1, round(faults.STEP_S * NS_PER_S))
-    with WindowJudge(WatchOptions(source=str(log), map=made.map, ego="ego", rules=(rule,))) as judge:
+    with WindowJudge(WatchOptions(source=str(log), map=scenario.map, ego="ego", rules=(rule,))) as judge:
         judged = judge.judge([cut_trace(trace, 0, end) for end in ends])
     return next(w.t_end_ns for w in judged if isinstance(w, JudgedWindow) and w.findings.num_rows)
 
@@ -109,17 +109,19 @@ def known_ns(log: Path, made: Scenario, rule: str, from_ns: int, until_ns: int) 
     "fault", [pytest.param(f, id=f.name, marks=[] if f.name == QUICK else pytest.mark.slow) for f in faults.FAULTS]
 )
 def test_a_fault_halts_the_simulation(fault: Fault, places: Path, tmp_path: Path) -> None:
-    made = faults.write(places, fault, fault.faulty)
-    log = faults.simulate(made)
-    row = finding(log, made, fault.rule)
+    scenario = faults.write(places, fault, fault.faulty)
+    log = faults.simulate(scenario)
+    row = finding(log, scenario, fault.rule)
     assert row["severity"] == fault.severity
 
-    came = live(made, tmp_path, fault.rule, halt_on=fault.severity)
+    came = live(scenario, tmp_path, fault.rule, halt_on=fault.severity)
     assert came.halted is not None
     same = ("rule_id", "severity", "object_id", "t_start_ns")
     assert [came.halted.row[name] for name in same] == [row[name] for name in same]
     since_ns = (
-        row["t_start_ns"] if fault.at_once else known_ns(log, made, fault.rule, row["t_start_ns"], came.halted.said_ns)
+        row["t_start_ns"]
+        if fault.at_once
+        else known_ns(log, scenario, fault.rule, row["t_start_ns"], came.halted.said_ns)
     )
     assert 0 <= came.halted.said_ns - since_ns <= EVERY_S * NS_PER_S
 
@@ -145,13 +147,13 @@ def test_the_same_scenario_without_the_fault_is_not_halted(fault: Fault, places:
 @pytest.mark.parametrize("overtakes", [False, True])
 def test_ordinary_traffic_is_not_halted(places: Path, tmp_path: Path, *, overtakes: bool) -> None:
     """All stable rules of ukhc, SUMO's default drivers with their own speeds, a minute live."""
-    made = faults.ordinary(places, ORDINARY_S, overtakes=overtakes)
-    came = live(made, tmp_path, halt_on="critical")
+    scenario = faults.ordinary(places, ORDINARY_S, overtakes=overtakes)
+    came = live(scenario, tmp_path, halt_on="critical")
     assert came.halted is None
     assert came.last_ns == ORDINARY_S * NS_PER_S - round(faults.STEP_S * NS_PER_S)
     assert {row["verdict"] for row in came.result.verdicts.to_pylist()} >= {"pass"}
     law = [alarm for alarm in came.alarms if alarm.withdrawn_ns is None and not alarm.finding_ids]
-    assert told([alarm.row for alarm in law]) == []
+    assert finding_keys([alarm.row for alarm in law]) == []
 
 
 @pytest.mark.slow
@@ -166,6 +168,6 @@ def test_an_hour_of_ordinary_traffic_has_no_alarm_that_check_does_not_find(tmp_p
     watched = watch(options, tmp_path, at_once=180)
     assert [each for each in watched.windows if isinstance(each, Exception)] == []
     assert len(watched.windows) >= HOUR_S / options.every_s - 5
-    assert (told([alarm.row for alarm in watched.false]), told(watched.missed)) == ([], [])
+    assert (finding_keys([alarm.row for alarm in watched.false]), finding_keys(watched.missed)) == ([], [])
     # an alarm that is withdrawn later would have halted all the same
     assert [alarm.number for alarm in watched.withdrawn if alarm.row["severity"] == "critical"] == []

@@ -208,7 +208,7 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("watch_options", "message"),
     [
         ({"window_s": 12.0, "every_s": 8.0}, "--every 8: use at most 7 s, or a longer --window"),
         ({"window_s": 9.0}, "--window 9: use more than 10 s"),
@@ -219,10 +219,10 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
         ({"command": ("true",), "replay": None, "source": "-"}, "stdin exists before the program after -- is started"),
     ],
 )
-def test_mistakes(asked: dict[str, Any], said: str) -> None:
-    asked = {"source": str(LOG), "map": ROAD, "rules": RULES, "replay": 0.0, **asked}
-    wanted = WatchOptions(**asked)
-    with pytest.raises(UsageError, match=said), source_of_watch(wanted, Silent()) as source:
+def test_mistakes(watch_options: dict[str, Any], message: str) -> None:
+    watch_options = {"source": str(LOG), "map": ROAD, "rules": RULES, "replay": 0.0, **watch_options}
+    wanted = WatchOptions(**watch_options)
+    with pytest.raises(UsageError, match=message), source_of_watch(wanted, Silent()) as source:
         Watch(wanted, source, print, Interruption())
 
 

@@ -13,15 +13,15 @@ times = st.lists(st.integers(0, 500), min_size=1, max_size=60).map(sorted)
 
 @given(times, st.integers(1, 60), st.integers(1, 40), st.lists(st.integers(1, 7), min_size=1, max_size=60))
 def test_every_frame_is_in_a_window_once_it_is_new_with_all_that_is_less_than_the_window_older(
-    stamps: list[int], length: int, most: int, portions: list[int]
+    stamps: list[int], length: int, step_ns: int, portions: list[int]
 ) -> None:
-    window, most = Window(length), min(most, length)  # a step must not leave the window before it was seen in one
+    window, step_ns = Window(length), min(step_ns, length)  # a step must not leave the window before it was seen in one
     new: list[int] = []
     todo, at = list(enumerate(stamps)), 0
     for portion in [*portions, *[1] * len(todo)]:
         window.add(Frame(t_ns, no, 1) for no, t_ns in todo[at : at + portion])
         at += portion
-        while window.advance(most):
+        while window.advance(step_ns):
             held = window.frames
             newest = held[-1].t_ns
             assert [f.data for f in held] == [no for no, t in todo if newest - length <= t and no <= held[-1].data]  # type: ignore[operator]

@@ -143,8 +143,8 @@ def test_a_truncated_file(tmp_path: Path) -> None:
     source.close()
 
 
-@pytest.mark.parametrize(("again", "what"), [(True, "replaced by another file"), (False, "taken away")])
-def test_a_replaced_file(tmp_path: Path, again: bool, what: str) -> None:
+@pytest.mark.parametrize(("again", "message"), [(True, "replaced by another file"), (False, "taken away")])
+def test_a_replaced_file(tmp_path: Path, again: bool, message: str) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(content("zstd")[:-100])
     source = McapSource(path, idle_s=None)
@@ -152,7 +152,7 @@ def test_a_replaced_file(tmp_path: Path, again: bool, what: str) -> None:
     path.rename(tmp_path / "old.mcap")
     if again:
         path.write_bytes(content("zstd"))
-    with pytest.raises(TraceError, match=what):
+    with pytest.raises(TraceError, match=message):
         source.read(0.0)
     source.close()
 

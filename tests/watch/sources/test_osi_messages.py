@@ -62,8 +62,8 @@ def test_any_bytes(data: bytes) -> None:
     assert not decoded.HasField("timestamp") or 2 in found
 
 
-@pytest.mark.parametrize("cut", range(1, 40))
-def test_a_cut_message_is_not_whole_unless_it_ends_with_a_field(cut: int) -> None:
+@pytest.mark.parametrize("n_cut", range(1, 40))
+def test_a_cut_message_is_not_whole_unless_it_ends_with_a_field(n_cut: int) -> None:
     data = osi_file.truth(10**9).SerializeToString()
     ends = {field.end for field in fields(data)}
-    assert is_complete_message(data[:-cut]) == (len(data) - cut in ends)
+    assert is_complete_message(data[:-n_cut]) == (len(data) - n_cut in ends)

@@ -185,11 +185,11 @@ def test_coordinates_of_a_map_that_was_moved(case_of: CaseOf) -> None:
 
 
 @pytest.mark.parametrize(
-    ("source", "said"), [("junctions", True), ("default", True), ("option", False), ("attribute", False)]
+    ("source", "is_stated"), [("junctions", True), ("default", True), ("option", False), ("attribute", False)]
 )
-def test_side_of_the_road_that_nobody_gave(source: str, *, said: bool) -> None:
+def test_side_of_the_road_that_nobody_gave(source: str, *, is_stated: bool) -> None:
     told = driving_side_text({"handedness": "lht", "handedness_source": source})
-    assert told.startswith("Left-hand traffic: ") is said
+    assert told.startswith("Left-hand traffic: ") is is_stated
 
 
 @pytest.mark.ci
@@ -206,8 +206,8 @@ def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dic
     ]
 
 
-@pytest.mark.parametrize("taken", [0, 600, 1200])
-def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
+@pytest.mark.parametrize("used_characters", [0, 600, 1200])
+def test_what_was_broken_is_told_before_anything_else(used_characters: int) -> None:
     """However much room hashes and warnings take, kept rules and reasons give way first."""
     parties: list[dict[str, Any]] = [
         {
@@ -218,6 +218,6 @@ def test_what_was_broken_is_told_before_anything_else(taken: int) -> None:
         },
         {"broken": ["b" * 140], "kept": ["k" * 60] * 8, "excused": [], "reasons": []},
     ]
-    fit_conduct_lists_and_return_further_pages(parties, 2, taken)
+    fit_conduct_lists_and_return_further_pages(parties, 2, used_characters)
     assert [told["broken"].more for told in parties] == [0, 0]
-    assert (parties[0]["kept"].more > 0) is (taken > 0)
+    assert (parties[0]["kept"].more > 0) is (used_characters > 0)

@@ -39,16 +39,16 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
     assert verified.problems == []
     assert "judged again: the same bytes" in verified.sentence
 
-    told = explain(ExplainRequest(HORN, tmp_path / "result", errors=MeasurementErrors(samples=0)))
-    assert told.verdict["judged_anew"] == verdict
-    assert not [note for note in told.notes if "Judged again" in note]
-    screen = printed(told)
+    explanation = explain(ExplainRequest(HORN, tmp_path / "result", errors=MeasurementErrors(samples=0)))
+    assert explanation.verdict["judged_anew"] == verdict
+    assert not [note for note in explanation.notes if "Judged again" in note]
+    screen = screen_text(explanation)
     assert ("NOT APPLICABLE: the log does not contain a signal that the rule needs" in screen) == (verdict != "unknown")
     assert "did not happen" not in screen
 
 
-def printed(told: Explanation) -> str:
+def screen_text(explanation: Explanation) -> str:
     console = Console(width=120, file=StringIO())
-    console.print(render(told, 120))
+    console.print(render(explanation, 120))
     assert isinstance(console.file, StringIO)
     return console.file.getvalue()

@@ -18,7 +18,7 @@ from drivelint.fleet_report.audit_views import open_audits, open_two_audits
 from drivelint.report.progress import Silent
 from drivelint.result.names import MANIFEST
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import InThisProcess, run_audit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,14 +28,14 @@ pytestmark = pytest.mark.ci
 
 
 @pytest.fixture(scope="module")
-def few(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
+def small_fleet(tmp_path_factory: pytest.TempPathFactory) -> fleet.Fleet:
     return fleet.write(tmp_path_factory.mktemp("fleet"), 8)
 
 
 @pytest.fixture(scope="module")
-def ended(few: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def ended(small_fleet: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("ended") / "out"
-    judged(few, out)
+    run_audit(small_fleet, out)
     return out
 
 
@@ -115,12 +115,14 @@ def test_a_missing_file_is_not_taken_for_another_run(copy: Path) -> None:
 @pytest.mark.parametrize(
     "change", [without_a_row, of_another_severity, by_other_settings, with_a_file_more, without_a_file]
 )
-def test_no_run_goes_on_from_a_changed_file(few: fleet.Fleet, copy: Path, change: Callable[[Path], str]) -> None:
+def test_no_run_goes_on_from_a_changed_file(
+    small_fleet: fleet.Fleet, copy: Path, change: Callable[[Path], str]
+) -> None:
     """Else its end would list the changed file as whole."""
     name = change(copy)
     for shard in (None, (1, 2)):
         with pytest.raises(UsageError, match=f"{name}: was changed since drivelint audit wrote it.*into another --out"):
-            judged(few, copy, shard=shard)
+            run_audit(small_fleet, copy, shard=shard)
     with pytest.raises(UsageError, match=name):
         merge(str(copy), Silent())
     with pytest.raises(UsageError, match=name), open_audits(str(copy)):
@@ -150,11 +152,11 @@ def without_a_sense(file: Path) -> None:
 
 @pytest.mark.parametrize("change", [passed, with_a_row_twice, of_nobody, without_a_sense])
 def test_no_run_goes_on_from_changed_rows_without_the_list(
-    few: fleet.Fleet, copy: Path, change: Callable[[Path], None]
+    small_fleet: fleet.Fleet, copy: Path, change: Callable[[Path], None]
 ) -> None:
     (copy / MANIFEST).unlink()
     change(only_file(copy, "verdicts"))
-    for again in (partial(judged, few, copy), partial(merge, str(copy), Silent())):
+    for again in (partial(run_audit, small_fleet, copy), partial(merge, str(copy), Silent())):
         with pytest.raises(UsageError, match=r"since drivelint audit wrote|did not write.*into another --out"):
             again()
     assert not (copy / MANIFEST).exists()
@@ -163,19 +165,19 @@ def test_no_run_goes_on_from_changed_rows_without_the_list(
 @pytest.mark.slow
 @pytest.mark.parametrize("change", [passed, without_a_sense])
 def test_no_run_goes_on_from_changed_rows_that_are_not_packed(
-    few: fleet.Fleet, tmp_path: Path, change: Callable[[Path], None]
+    small_fleet: fleet.Fleet, tmp_path: Path, change: Callable[[Path], None]
 ) -> None:
     out = tmp_path / "out"
-    judged(few, out, shard=(1, 1))
+    run_audit(small_fleet, out, shard=(1, 1))
     change(next((out / "batches" / "verdicts").iterdir()))
-    for again in (partial(judged, few, out), partial(merge, str(out), Silent())):
+    for again in (partial(run_audit, small_fleet, out), partial(merge, str(out), Silent())):
         with pytest.raises(UsageError, match="since drivelint audit wrote"):
             again()
 
 
-def test_an_audit_without_the_list_goes_on_where_its_rows_are_as_written(few: fleet.Fleet, copy: Path) -> None:
+def test_an_audit_without_the_list_goes_on_where_its_rows_are_as_written(small_fleet: fleet.Fleet, copy: Path) -> None:
     (copy / MANIFEST).unlink()
-    assert judged(few, copy).reused == 8
+    assert run_audit(small_fleet, copy).reused == 8
     assert (copy / MANIFEST).exists()
 
 
@@ -184,23 +186,23 @@ def test_an_audit_that_is_copied_elsewhere_is_whole(copy: Path) -> None:
         assert audit.digest
 
 
-def test_an_audit_that_goes_on_is_no_changed_one(few: fleet.Fleet, copy: Path, tmp_path: Path) -> None:
+def test_an_audit_that_goes_on_is_no_changed_one(small_fleet: fleet.Fleet, copy: Path, tmp_path: Path) -> None:
     """Neither after it has got more drives, nor while it has not come to its end."""
     more = fleet.write(tmp_path / "more", 9)
-    judged(few, copy, sources=str(more.manifest.parent / "logs"))
+    run_audit(small_fleet, copy, sources=str(more.manifest.parent / "logs"))
     with open_audits(str(copy)) as (con, audit, _):
         assert (audit.digest is not None, con.sql("SELECT count(*) FROM drives").fetchall()) == (True, [(17,)])
     with pytest.raises(ZeroDivisionError):
-        judged(few, copy, Dying(), sources=str(fleet.write(tmp_path / "other", 2, seed=1).manifest))
+        run_audit(small_fleet, copy, Dying(), sources=str(fleet.write(tmp_path / "other", 2, seed=1).manifest))
     assert not (copy / MANIFEST).exists()
     with open_audits(str(copy)) as (_, audit, _):
         assert audit.warning
 
 
 @pytest.mark.slow
-def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
+def test_a_merged_audit_has_the_list(small_fleet: fleet.Fleet, tmp_path: Path) -> None:
     for part in (1, 2):
-        judged(few, tmp_path / "out", shard=(part, 2))
+        run_audit(small_fleet, tmp_path / "out", shard=(part, 2))
     assert not (tmp_path / "out" / MANIFEST).exists()
     merge(str(tmp_path / "out"), Silent())
     name = without_a_row(tmp_path / "out")
@@ -208,11 +210,11 @@ def test_a_merged_audit_has_the_list(few: fleet.Fleet, tmp_path: Path) -> None:
         pass
 
 
-@pytest.mark.parametrize("gone", [(MANIFEST,), (MANIFEST, "summary.json"), ()])
-def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Path, gone: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("names", [(MANIFEST,), (MANIFEST, "summary.json"), ()])
+def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Path, names: tuple[str, ...]) -> None:
     """Else whoever changes a file takes the list away, too."""
     (copy / MANIFEST).write_text("{}", encoding="utf-8")
-    for name in gone:
+    for name in names:
         (copy / name).unlink()
     with (
         pytest.raises(UsageError, match=r"has ended, and files\.json.*give the same audit again"),
@@ -226,10 +228,10 @@ def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Pa
 
 
 @pytest.fixture(scope="module")
-def loose(few: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def loose(small_fleet: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return an audit that is not packed."""
     out = tmp_path_factory.mktemp("loose") / "out"
-    judged(few, out, shard=(1, 1))
+    run_audit(small_fleet, out, shard=(1, 1))
     return out
 
 

@@ -15,7 +15,7 @@ from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import Audit
 from tests.fleet import audits
-from tests.fleet.audits import found, said
+from tests.fleet.audits import drive_finding, drive_verdict
 from tests.report.synthetic import rule
 
 CONTACT = rule("z-contact", profiles=[], tags=["contact"], title="No collision")
@@ -26,7 +26,7 @@ def words_of(element: Any) -> str:
     return " ".join(element.text_content().split())
 
 
-class Told:
+class FleetPage:
     """The page of a fleet as text."""
 
     def __init__(self, drives: list[Any], verdicts: list[Any], findings: list[Any], *by: str, **settings: Any) -> None:
@@ -46,9 +46,9 @@ class Told:
         return next(row for row in rows if name in str(row.xpath("string(th)")))
 
 
-def touched(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:
-    return found(drive_id, rule_id="z-contact", finding_id=f"{drive_id}-{n}", t_worst_s=12.5, **over)
+def contact(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:
+    return drive_finding(drive_id, rule_id="z-contact", finding_id=f"{drive_id}-{n}", t_worst_s=12.5, **over)
 
 
 def words(drive_id: str, word: str = "pass", **over: Any) -> list[Any]:
-    return [said(drive_id, word, **({"rule_id": name} | over)) for name in ("a-room", "z-contact")]
+    return [drive_verdict(drive_id, word, **({"rule_id": name} | over)) for name in ("a-room", "z-contact")]

@@ -21,10 +21,14 @@ NEVER = verdict("not_applicable", object_id=None, profile=None, **dict.fromkeys(
 BEFORE = verdict("pass", **CONTACT | {"t_start_ns": 100 * SECOND, "t_end_ns": 105 * SECOND, "t_worst_ns": 105 * SECOND})
 
 
-def seen(ego: list[tuple[float, float]], other: list[tuple[float, float]]) -> list[dict[str, Any]]:
+def recorded_rows(
+    ego_spans: list[tuple[float, float]], object_spans: list[tuple[float, float]]
+) -> list[dict[str, Any]]:
     """When the ego and object 3 are recorded, in seconds of the drive."""
-    spans = (("1", ego), ("3", other))
-    return [row for who, told in spans for a, b in told for row in recorded(who, start_s=100 + a, end_s=100 + b)]
+    spans = (("1", ego_spans), ("3", object_spans))
+    return [
+        row for actor_id, times in spans for a, b in times for row in recorded(actor_id, start_s=100 + a, end_s=100 + b)
+    ]
 
 
 def only(new: Result) -> ComparedFinding:
@@ -35,9 +39,9 @@ def only(new: Result) -> ComparedFinding:
 WHOLE = [(0.0, 25.0)]
 
 
-@pytest.mark.parametrize("said", [PASS, NEVER, BEFORE], ids=["pass", "never applicable", "passed before"])
+@pytest.mark.parametrize("verdict_row", [PASS, NEVER, BEFORE], ids=["pass", "never applicable", "passed before"])
 @pytest.mark.parametrize(
-    ("ego", "other", "standing", "why"),
+    ("ego_spans", "object_spans", "standing", "why"),
     [
         (WHOLE, WHOLE, "fixed", ""),
         (WHOLE, [(11.5, 17.5)], "fixed", ""),
@@ -53,9 +57,15 @@ WHOLE = [(0.0, 25.0)]
     ],
 )  # fmt: skip
 def test_kept_counts_only_where_both_are_recorded(
-    ego: list[tuple[float, float]], other: list[tuple[float, float]], standing: str, why: str, said: dict[str, Any]
+    ego_spans: list[tuple[float, float]],
+    object_spans: list[tuple[float, float]],
+    standing: str,
+    why: str,
+    verdict_row: dict[str, Any],
 ) -> None:
-    entry = only(result([said], drives=[drive(sha256="ef" * 32, recorded=seen(ego, other))]))
+    entry = only(
+        result([verdict_row], drives=[drive(sha256="ef" * 32, recorded=recorded_rows(ego_spans, object_spans))])
+    )
     assert entry.standing == standing
     assert why in entry.why
 
@@ -66,9 +76,11 @@ def test_that_nobody_came_says_nothing_of_an_object_that_the_log_has_not() -> No
     assert (entry.standing, entry.there) == ("lost", "none")
 
 
-@pytest.mark.parametrize("said", [verdict("unknown", **CONTACT), verdict("fail", n_expected=9, n_judged=5, **CONTACT)])
-def test_the_rules_own_unknown_comes_first(said: dict[str, Any]) -> None:
-    entry = only(result([said], drives=[drive(recorded=recorded("1", "3", end_s=106.0))]))
+@pytest.mark.parametrize(
+    "verdict_row", [verdict("unknown", **CONTACT), verdict("fail", n_expected=9, n_judged=5, **CONTACT)]
+)
+def test_the_rules_own_unknown_comes_first(verdict_row: dict[str, Any]) -> None:
+    entry = only(result([verdict_row], drives=[drive(recorded=recorded("1", "3", end_s=106.0))]))
     assert (entry.standing, "recorded" in entry.why) == ("unknown", False)
 
 
@@ -93,7 +105,7 @@ RULES = [rule(), rule("m", severity="minor")]
 
 
 @pytest.mark.parametrize(
-    ("now", "said"),
+    ("now", "message"),
     [
         (DECIDED, ""),
         ([*DECIDED, verdict("unknown", object_id="6")], ""),  # nothing was decided of it
@@ -104,9 +116,9 @@ RULES = [rule(), rule("m", severity="minor")]
         ([*DECIDED[:3], verdict("unknown", rule_id="m")], "1 verdict unknown that was pass or fail before"),
     ],
 )  # fmt: skip
-def test_what_is_judged_less_is_said(now: list[dict[str, Any]], said: str) -> None:
+def test_what_is_judged_less_is_said(now: list[dict[str, Any]], message: str) -> None:
     found = less(result(DECIDED, rules=RULES), result(now, rules=RULES))
-    assert found == (f"judged less than the baseline: {said}" if said else "")
+    assert found == (f"judged less than the baseline: {message}" if message else "")
 
 
 def test_drives_and_rules_that_are_left_out_are_judged_less() -> None:
@@ -121,13 +133,13 @@ def test_drives_and_rules_that_are_left_out_are_judged_less() -> None:
 
 def test_another_map_is_said_and_a_drive_that_was_perhaps_cut_off() -> None:
     base = result([PASS], drives=[drive(duration_s=14.0, map_sha256="a")])
-    for now, said in (
+    for now, message in (
         (drive(duration_s=13.0, map_sha256="a"), ""),
         (drive(duration_s=12.0, map_sha256="a"), "judged less than the baseline: 1 drive shorter by more than a tenth"),
         (drive(duration_s=14.0, map_sha256="b"), "judged on another map than in the baseline: 1 drive"),
         (drive(duration_s=14.0, map_sha256=None), "judged on another map than in the baseline: 1 drive"),
     ):
-        assert less(base, result([PASS], drives=[now])) == said
+        assert less(base, result([PASS], drives=[now])) == message
 
 
 def test_results_without_a_common_drive_say_so_and_count_no_more_unknowns() -> None:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.ci
 
 
-def verified(*given: object) -> tuple[int, str]:
-    found = CliRunner().invoke(app, ["verify", *map(str, given)])
+def exit_code_and_text(*arguments: object) -> tuple[int, str]:
+    found = CliRunner().invoke(app, ["verify", *map(str, arguments)])
     return found.exit_code, found.stdout
 
 
@@ -35,21 +35,21 @@ def dated(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
 @pytest.mark.slow
 def test_without_a_key_nobody_is_identified(dated: tuple[Path, ...], packed: Packed, tmp_path: Path) -> None:
     pack = dated[1]
-    code, said = verified(pack)
+    code, said = exit_code_and_text(pack)
     assert (code, "consistent" in said, "only --key identifies" in said) == (0, True, True)
-    code, said = verified(pack, "--require-signature")
+    code, said = exit_code_and_text(pack, "--require-signature")
     assert (code, said.startswith("nobody identified: ")) == (1, True)
-    assert verified(pack, "--require-signature", "--key", packed.public)[0] == 0
-    assert verified(pack, "--require-signature", "--key", packed.other_public)[0] == 1
+    assert exit_code_and_text(pack, "--require-signature", "--key", packed.public)[0] == 0
+    assert exit_code_and_text(pack, "--require-signature", "--key", packed.other_public)[0] == 1
 
 
 @pytest.mark.slow
 def test_a_pack_that_is_not_signed(packed: Packed, tmp_path: Path) -> None:
     pack = make_pack(packed.result, tmp_path / "pack", None)
     assert not (pack / STATEMENT).exists()
-    assert verified(pack)[0] == 0
+    assert exit_code_and_text(pack)[0] == 0
     for key in ((), ("--key", packed.public)):
-        code, said = verified(pack, "--require-signature", *key)
+        code, said = exit_code_and_text(pack, "--require-signature", *key)
         assert (code, "not signed" in said) == (1, True)
 
 
@@ -59,13 +59,13 @@ def test_an_older_pack_is_told_by_its_date(dated: tuple[Path, ...], packed: Pack
     swapped = tmp_path / "newest"
     shutil.copytree(older, swapped)
     key = ("--key", packed.public)
-    assert ", dated 2026-11-26, " in verified(newer, *key)[1]
-    code, said = verified(swapped, *key)
+    assert ", dated 2026-11-26, " in exit_code_and_text(newer, *key)[1]
+    code, said = exit_code_and_text(swapped, *key)
     assert (code, ", dated 2026-10-31, " in said) == (0, True)
-    assert ", without a date, " in verified(without, *key)[1]
-    assert verified(newer, *key, "--not-before", "2026-11-26")[0] == 0
+    assert ", without a date, " in exit_code_and_text(without, *key)[1]
+    assert exit_code_and_text(newer, *key, "--not-before", "2026-11-26")[0] == 0
     for pack in (swapped, without):
-        code, said = verified(pack, *key, "--not-before", "2026-11-26")
+        code, said = exit_code_and_text(pack, *key, "--not-before", "2026-11-26")
         assert (code, said.startswith("older pack: ")) == (1, True)
     found = CliRunner().invoke(app, ["verify", str(newer), "--not-before", "yesterday"])
     assert str(found.exception) == "--not-before yesterday is not a valid date: write it as 2026-11-26"

@@ -28,7 +28,7 @@ EGO = "4.5,1.8"
 OFF_S = {"before": -1.0, "at": 0.0, "after": 1.0}
 
 
-def judged(bag: Path, out: Path, **more: object) -> Path:
+def result_folder(bag: Path, out: Path, **more: object) -> Path:
     options: dict[str, object] = {"rules": RULES, "ego_size": EGO, "robustness": False, "annotate": False, **more}
     drivelint.check(bag, out=out, overwrite=True, **options)  # type: ignore[arg-type]
     return out
@@ -41,7 +41,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def out(bag: Path) -> Path:
-    return judged(bag, bag.parent / "results")
+    return result_folder(bag, bag.parent / "results")
 
 
 def test_each_picture_is_the_frame_that_was_taken_nearest_in_time(out: Path) -> None:
@@ -53,7 +53,7 @@ def test_each_picture_is_the_frame_that_was_taken_nearest_in_time(out: Path) -> 
 def test_a_frame_is_late_though_the_states_are_logged_without_delay(tmp_path: Path) -> None:
     """A claims handler saw a frame of 0.05 s earlier "at the moment": the drive's own times were equal to its log times."""
     bag = write_bag(tmp_path / "bag", states_late_s=0.0)
-    assert_nearest(load_result(judged(bag, tmp_path / "results")).pictures.to_pylist())
+    assert_nearest(load_result(result_folder(bag, tmp_path / "results")).pictures.to_pylist())
 
 
 def test_a_drive_by_log_times_has_the_log_times_of_its_frames() -> None:
@@ -93,7 +93,7 @@ def test_inspect_says_that_a_camera_is_read_as_pictures(bag: Path) -> None:
 
 @pytest.mark.ci
 def test_without_pictures_the_page_is_that_of_a_log_without_cameras(bag: Path, out: Path, tmp_path: Path) -> None:
-    plain = judged(bag, tmp_path / "plain", pictures=False)
+    plain = result_folder(bag, tmp_path / "plain", pictures=False)
     assert not (plain / "pictures.parquet").exists()
     result = load_result(out)
     drivelint_page = html.render(load_result(plain))
@@ -120,7 +120,7 @@ def test_a_log_without_cameras_leaves_nothing_and_imports_no_pillow(tmp_path: Pa
 @pytest.mark.ci
 def test_a_damaged_frame_is_told_and_the_others_are_shown(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / "bag", damaged={42})
-    result = load_result(judged(bag, tmp_path / "out"))
+    result = load_result(result_folder(bag, tmp_path / "out"))
     shown = {(row["camera"], row["shot"]) for row in result.pictures.to_pylist()}
     assert (FRONT, "at") not in shown
     assert {(FRONT, "before"), (FRONT, "after"), (LEFT, "at")} <= shown
@@ -146,7 +146,7 @@ def test_the_sheet_has_a_page_of_them(bag: Path, out: Path) -> None:
 def test_twenty_findings_of_noise_make_a_page_of_under_six_megabytes(tmp_path: Path) -> None:
     """What they take of a run's time is in `python -m tests.bench pictures`."""
     bag = write_bag(tmp_path / "bag", noise=True, contacts=20)
-    out = judged(bag, tmp_path / "out", rules=None)
+    out = result_folder(bag, tmp_path / "out", rules=None)
     result = load_result(out)
     assert result.findings.num_rows >= 20
     assert result.pictures.num_rows > 100
