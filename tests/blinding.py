@@ -32,7 +32,7 @@ def renamed(drive: Drive, name: str) -> Drive:
     return Drive(replace(drive.trace, drive_id=name, tables=tables), drive.environment)
 
 
-def changed(drive: Drive, table: str, change: Callable[[pa.Table], pa.Table]) -> Drive:
+def change_table(drive: Drive, table: str, change: Callable[[pa.Table], pa.Table]) -> Drive:
     """Return the drive with one of its tables changed."""
     tables = {**drive.trace.tables, table: change(drive.trace.tables[table])}
     return Drive(replace(drive.trace, tables=tables), drive.environment)
@@ -59,14 +59,14 @@ def nulled(drive: Drive, actor: str, span: Span) -> Drive:
         nothing = pa.nulls(len(hit), pa.float64())
         return _with(_with(states, "x_m", hit, nothing), "y_m", hit, nothing)
 
-    return changed(drive, "actor_state", change)
+    return change_table(drive, "actor_state", change)
 
 
 def dropped(drive: Drive, actor: str | None, span: Span) -> Drive:
     """Take away the actor's rows; None: everybody's, a hole in the log. An actor without any row is not in the log at all."""
-    less = changed(drive, "actor_state", lambda states: states.filter(pa.array(~_hit(states, actor, span))))
+    less = change_table(drive, "actor_state", lambda states: states.filter(pa.array(~_hit(states, actor, span))))
     left = pc.unique(less.trace.tables["actor_state"]["actor_id"])
-    return changed(less, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
+    return change_table(less, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
 
 
 def renamed_actor(drive: Drive, actor: str, t_s: float) -> Drive:
@@ -84,12 +84,12 @@ def renamed_actor(drive: Drive, actor: str, t_s: float) -> Drive:
         own = actors.filter(pc.equal(actors["actor_id"], actor))
         return pa.concat_tables([actors, under_new_id(own, np.ones(own.num_rows, bool))])
 
-    both = changed(changed(drive, "actor_state", change), "actor", repeat)
+    both = change_table(change_table(drive, "actor_state", change), "actor", repeat)
     left = pc.unique(both.trace.tables["actor_state"]["actor_id"])
-    return changed(both, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
+    return change_table(both, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
 
 
-def moved(drive: Drive, actor: str, span: Span, by_m: float) -> Drive:
+def move_actor(drive: Drive, actor: str, span: Span, by_m: float) -> Drive:
     """Move the actor to its left."""
 
     def change(states: pa.Table) -> pa.Table:
@@ -99,7 +99,7 @@ def moved(drive: Drive, actor: str, span: Span, by_m: float) -> Drive:
         y = states["y_m"].to_numpy(zero_copy_only=False) + by_m * np.cos(yaw)
         return _with(_with(states, "x_m", hit, pa.array(x)), "y_m", hit, pa.array(y))
 
-    return changed(drive, "actor_state", change)
+    return change_table(drive, "actor_state", change)
 
 
 def turned(drive: Drive, actor: str, span: Span) -> Drive:
@@ -110,7 +110,7 @@ def turned(drive: Drive, actor: str, span: Span) -> Drive:
         hit = _hit(states, actor, span) & (np.hypot(vx, vy) > 1.0)
         return _with(states, "yaw_rad", hit, pa.array(np.arctan2(-np.sin(yaw), -np.cos(yaw)), from_pandas=True))
 
-    return ingested(changed(drive, "actor_state", change))
+    return ingested(change_table(drive, "actor_state", change))
 
 
 def frozen(drive: Drive, actor: str, span: Span) -> Drive:
@@ -125,7 +125,7 @@ def frozen(drive: Drive, actor: str, span: Span) -> Drive:
             states = _with(states, column, hit, pa.array(held, from_pandas=True))
         return states
 
-    return ingested(changed(drive, "actor_state", change))
+    return ingested(change_table(drive, "actor_state", change))
 
 
 def jumped(drive: Drive, actor: str, span: Span, by_m: float = 150.0) -> Drive:
@@ -139,7 +139,7 @@ def jumped(drive: Drive, actor: str, span: Span, by_m: float = 150.0) -> Drive:
             states = _with(states, column, hit, pa.array(there, from_pandas=True))
         return states
 
-    return ingested(changed(drive, "actor_state", change))
+    return ingested(change_table(drive, "actor_state", change))
 
 
 def cut(drive: Drive, span: Span) -> Drive:
@@ -162,7 +162,7 @@ def ranged(drive: Drive, range_m: float) -> Drive:
             log.schema.get_field_index("sensor_range_m"), "sensor_range_m", pa.array([range_m] * log.num_rows)
         )
 
-    return changed(changed(drive, "actor_state", change), "data_log", say)
+    return change_table(change_table(drive, "actor_state", change), "data_log", say)
 
 
 def on(drive: Drive, environment: MapTables | None) -> Drive:
@@ -224,7 +224,7 @@ def without(drive: Drive, table: str, columns: tuple[str, ...], actor: str | Non
             rows = _with(rows, column, hit, pa.nulls(len(hit), rows.schema.field(column).type))
         return rows
 
-    return changed(drive, table, change)
+    return change_table(drive, table, change)
 
 
 def empty(rows: pa.Table) -> pa.Table:

@@ -48,7 +48,7 @@ TOGETHER: Final = {
     "tests/result": "report",
 }
 """Folder -> name of the files that share what takes long to make: one process runs them all."""
-FEW: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1)}
+SAMPLE_SIZES: Final = {"tests/absence": (0, 1), "tests/derive": (0, 1), "tests/evaluate": (1, 1)}
 """Folder -> so many cases of each of its tests are quick, and so many more `ci`; others are slow, unless the test is marked `sample`."""
 LATER: Final = ROOT / "tests" / "derive"
 """The folder of which no test is quick: the statements of each scene are planned anew, which takes seconds."""
@@ -137,7 +137,7 @@ def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
             quick = [case for case in cases if sides[id(case)] in {None, zlib.crc32(name.encode()) % 2}]
         if sample := cases[0].get_closest_marker("sample"):
             quick, later = _parted(quick, sample.args[0], sample.kwargs.get("ci", 0))
-        elif few := FEW.get(Path(path).parent.relative_to(ROOT).as_posix()):
+        elif few := SAMPLE_SIZES.get(Path(path).parent.relative_to(ROOT).as_posix()):
             quick, later = _parted(quick, *few)
         for case in cases:
             if case not in quick:

@@ -35,7 +35,7 @@ COMES_MPS = 0.5
 FULL_BRAKING_MPS2 = 8.0
 
 
-class Seen(NamedTuple):
+class SeenVehicle(NamedTuple):
     """Another vehicle, seen along the ego's lane: rear station less the ego's front, and its extent across."""
 
     name: str
@@ -66,7 +66,11 @@ class Measure(NamedTuple):
 
 
 def measure(
-    speed: float, drift: float, across: tuple[float, float], others: Iterable[Seen], doubt_rad: float = 0.0
+    speed: float,
+    drift: float,
+    across: tuple[float, float],
+    other_vehicles: Iterable[SeenVehicle],
+    doubt_rad: float = 0.0,
 ) -> Measure:
     """Return a step's measures by their definitions.
 
@@ -79,12 +83,12 @@ def measure(
     overlap when the ego is there, at the present speeds across, and one of them moves. `doubt_rad`: how exactly the lane's
     heading is known.
     """
-    others = list(others)
-    near = [o for o in others if o.ahead and o.in_by > OVER_M and not o.comes]
+    other_vehicles = list(other_vehicles)
+    near = [o for o in other_vehicles if o.ahead and o.in_by > OVER_M and not o.comes]
     reaching = [o for o in near if o.gap >= 0 or _overlap(across, o.across) > 0]
     late = {o.name: _comes_in_by(drift, across, o) for o in reaching}
     inside = [o for o in reaching if o.centre_in_by >= 0 or late[o.name] > 0]
-    close_call = any(o.ahead and abs(o.in_by - OVER_M) < CLOSE_CALL_M for o in others)
+    close_call = any(o.ahead and abs(o.in_by - OVER_M) < CLOSE_CALL_M for o in other_vehicles)
     close_call |= any(
         abs(o.gap) < CLOSE_CALL_M or (o.gap < 0 and abs(_overlap(across, o.across)) < CLOSE_CALL_M) for o in near
     )
@@ -124,10 +128,10 @@ def _or_never(time: float) -> float:
     return math.inf if time > NEVER_S else time
 
 
-def _comes_in_by(drift: float, across: tuple[float, float], other: Seen) -> float:
+def _comes_in_by(drift: float, across: tuple[float, float], vehicle: SeenVehicle) -> float:
     """Return by how much the two boxes overlap across the lane, now or in DRIFT_S if they come nearer."""
-    side = math.copysign(1.0, sum(other.across) - sum(across))
-    return _overlap(across, other.across) + DRIFT_S * max(0.0, side * (drift - other.drift))
+    side = math.copysign(1.0, sum(vehicle.across) - sum(across))
+    return _overlap(across, vehicle.across) + DRIFT_S * max(0.0, side * (drift - vehicle.drift))
 
 
 def _overlap(a: tuple[float, float], b: tuple[float, float]) -> float:
@@ -208,17 +212,17 @@ def _drift(a: Mapping[str, Any], i: int, lane: Lane) -> float:
 
 
 def _esmini_seen(  # noqa: PLR0917 - two vehicles, a moment, and the road
-    name: str, a: Mapping[str, Any], own: Mapping[str, Any], i: int, lane: Lane, bends: tuple[Floats, Floats]
-) -> Seen:
+    name: str, a: Mapping[str, Any], ego: Mapping[str, Any], i: int, lane: Lane, bends: tuple[Floats, Floats]
+) -> SeenVehicle:
     """See a vehicle from the ego: the lane's middle is (1 - curvature x offset) as long as the reference line."""
-    way = np.linspace(own["s"][i], a["s"][i], 200)
+    way = np.linspace(ego["s"][i], a["s"][i], 200)
     apart = lane.sense * float(np.trapezoid(1 - np.interp(way, *bends) * lane.centre, way))
     low, high = _across(a, i, lane)
     with_lane = lane.sense * math.cos(a["rel"][i])
-    return Seen(
+    return SeenVehicle(
         name,
-        apart + float(_corners(a, i, lane)[0].min() - _corners(own, i, lane)[0].max()),
-        bool(apart + float(_corners(a, i, lane)[0].mean() - _corners(own, i, lane)[0].mean()) > 0),
+        apart + float(_corners(a, i, lane)[0].min() - _corners(ego, i, lane)[0].max()),
+        bool(apart + float(_corners(a, i, lane)[0].mean() - _corners(ego, i, lane)[0].mean()) > 0),
         (low, high),
         min(lane.half - low, high + lane.half),
         lane.half - abs(low + high) / 2,
@@ -316,7 +320,7 @@ class Scenario:
         best = min((f for f in found if f[0] < math.pi / 2), default=None)
         return best[1] if best else None
 
-    def _chain(self, lane: str, driven: list[str]) -> list[str]:
+    def _chain(self, lane: str, driven_lanes: list[str]) -> list[str]:
         """Return the lanelets before and after: as driven where known, else straight on."""
         chain = [lane]
         for links, at, put in ((self.after, -1, chain.append), (self.before, 0, lambda n: chain.insert(0, n))):
@@ -324,7 +328,7 @@ class Scenario:
                 choices = [n for n in links[chain[at]] if n not in chain]
                 if not choices:
                     break
-                put(min(choices, key=lambda n: (n not in driven, abs(self._bend(n)))))
+                put(min(choices, key=lambda n: (n not in driven_lanes, abs(self._bend(n)))))
         return chain
 
     def _bend(self, name: str) -> float:
@@ -355,7 +359,7 @@ class Scenario:
             comes = abs(turn) > 2 * math.pi / 3 and speed > COMES_MPS
             inside = min(width - od.min(), od.max() + width)
             seen.append(
-                Seen(
+                SeenVehicle(
                     name,
                     float(os.min() - s.max()),
                     mid > centre_s,

@@ -52,7 +52,7 @@ def installed(extras: Sequence[str] = USED) -> dict[str, str]:
     return found
 
 
-def refused(licences: dict[str, str]) -> dict[str, str]:
+def refused_licences(licences: dict[str, str]) -> dict[str, str]:
     """Return those that cannot be accepted; of a choice of licences, one that can is enough."""
     return {
         name: said

@@ -1,7 +1,7 @@
 """Tiny scenes: a road as OpenDRIVE text, actors moving along it, and what the library derives from them; no files.
 
 Roads run along their reference line: `s` metres along it, `d` metres to its left. On a two-way road driven on the right
-the ego goes along +s at d = -1.75; driven on the left everything is mirrored. `Road.own` is that offset, `Road.other`
+the ego goes along +s at d = -1.75; driven on the left everything is mirrored. `Road.ego_d` is that offset, `Road.oncoming_d`
 that of the oncoming lane.
 """
 
@@ -54,14 +54,14 @@ class Road:
     start: Pose = (0.0, 0.0, 0.0)
 
     @property
-    def own(self) -> float:
+    def ego_d(self) -> float:
         """Offset of the ego's lane."""
         return LANE / 2 * (1 if self.environment.handedness == "lht" else -1)
 
     @property
-    def other(self) -> float:
+    def oncoming_d(self) -> float:
         """Offset of the oncoming lane."""
-        return -self.own
+        return -self.ego_d
 
     @property
     def over(self) -> int:
@@ -174,7 +174,7 @@ class Actor:
         arrays = {name: getattr(self, name)[mask] for name in ("t_s", "x", "y", "yaw", "vx", "vy")}
         return replace(self, **arrays, indicator=lights)
 
-    def lost(self, mask: NDArray[np.bool_]) -> Actor:
+    def without_position(self, mask: NDArray[np.bool_]) -> Actor:
         """Return it without a position in the samples of the mask."""
         return replace(self, x=np.where(mask, np.nan, self.x), y=np.where(mask, np.nan, self.y))
 
@@ -213,7 +213,7 @@ def swing(way: Road, s: Floats, out: float, back: float | None, change: float = 
     over = ease((s - out) / change)
     if back is not None:
         over = over - ease((s - back) / change)
-    d: Floats = way.own + (way.other - way.own) * share * over
+    d: Floats = way.ego_d + (way.oncoming_d - way.ego_d) * share * over
     return d
 
 
@@ -266,14 +266,14 @@ def drive(
 Event = tuple[float, str, str | None]
 
 
-def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **given: str) -> Drive:
+def saying(scene: Drive, events: Sequence[Event] = (), by: str = "ego", **conditions: str) -> Drive:
     """Return the drive with events (seconds, name, value) that an actor declares, and with conditions given for it."""
     tables, drive_id = dict(scene.trace.tables), scene.trace.drive_id
     said = [
         {"drive_id": drive_id, "actor_id": by, "t_ns": round(t * 1e9), "event": event, "value": value}
         for t, event, value in events
     ]
-    holds = [{"drive_id": drive_id, "condition": c, "value": v, "source": "env"} for c, v in given.items()]
+    holds = [{"drive_id": drive_id, "condition": c, "value": v, "source": "env"} for c, v in conditions.items()]
     for name, found in (("declared_event", said), ("drive_condition", holds)):
         tables[name] = pa.Table.from_pylist(found, schema=tables[name].schema)
     return replace(scene, trace=replace(scene.trace, tables=tables))
@@ -363,7 +363,7 @@ def rule_ids(patterns: Sequence[str]) -> list[str]:
     return [rule.id for rule in catalogue.select_rules(_rules(), tuple(patterns), ())]
 
 
-def judged(
+def verdict_rows(
     *batches: Sequence[Drive],
     rules: Sequence[str] = (),
     profiles: Sequence[str] = (),

@@ -79,13 +79,13 @@ class Log(NamedTuple):
         return str(self.table), "--mapping", str(self.mapping), "--map", str(self.road), "--handedness", "rht"
 
 
-def write_log(tmp_path: Path, absent: str, who: str) -> Log:
+def write_log(tmp_path: Path, absent: str, actors: str) -> Log:
     """Write a log of 4 s in which some columns are empty: for all, for the ego or for all others."""
     lines = [",".join(state(0, "ego"))]
     for k in range(40):
         for name in ("ego", "lead", "oncoming", "walker"):
             row = state(k, name)
-            if who == "all" or (name == "ego") == (who == "ego"):
+            if actors == "all" or (name == "ego") == (actors == "ego"):
                 row |= dict.fromkeys(COLUMNS[absent], "")
             lines.append(",".join(map(str, row.values())))
     table, mapping, drawn = tmp_path / "log.csv", tmp_path / "m.toml", tmp_path / "road.xodr"
@@ -126,11 +126,11 @@ def command(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.sample(0, ci=2)
-@pytest.mark.parametrize("who", ["all", "ego", "others"])
+@pytest.mark.parametrize("actors", ["all", "ego", "others"])
 @pytest.mark.parametrize("absent", COLUMNS)
-def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command: Command) -> None:
-    log, out = write_log(tmp_path, absent, who), tmp_path / "out"
-    decides = absent not in {"position", "everything"} or who == "others"
+def test_every_output_is_written(absent: str, actors: str, tmp_path: Path, command: Command) -> None:
+    log, out = write_log(tmp_path, absent, actors), tmp_path / "out"
+    decides = absent not in {"position", "everything"} or actors == "others"
     options = ("--margins", "--keep-db", "--annotate", "--no-robustness")
     command("check", *log.options, *RULES, "--out", out, *options, decides=decides)
     counts = json.loads((out / "summary.json").read_text("utf-8"))
@@ -149,18 +149,18 @@ def test_every_output_is_written(absent: str, who: str, tmp_path: Path, command:
     command("inspect", *log.options)
     # boxes that are not known do not touch, and pass only where they are too far apart whatever their headings
     contact = {row["verdict"] for row in verdicts if row["rule_id"] == "ukhc.no-collision"}
-    if absent in {"size", "everything"} or (absent == "position" and who != "others"):
+    if absent in {"size", "everything"} or (absent == "position" and actors != "others"):
         assert contact == {"unknown"}
     elif absent in {"heading", "position"}:
         assert "unknown" in contact
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("who", ["all", "ego", "others"])
+@pytest.mark.parametrize("actors", ["all", "ego", "others"])
 @pytest.mark.parametrize("absent", COLUMNS)
 @pytest.mark.parametrize("name", ["audit", "watch"])
-def test_it_is_audited_and_watched(name: str, absent: str, who: str, tmp_path: Path) -> None:
-    log = write_log(tmp_path, absent, who)
+def test_it_is_audited_and_watched(name: str, absent: str, actors: str, tmp_path: Path) -> None:
+    log = write_log(tmp_path, absent, actors)
     more = ["--out", str(tmp_path / "fleet")] if name == "audit" else ["--replay", "0", "--every", "2"]
     done = subprocess.run(
         [sys.executable, "-m", "drivelint", name, *log.options, *more],

@@ -17,7 +17,7 @@ import pytest
 from drivelint.scene import document
 from drivelint.scene.judge import VerdictsOfScenes, judge_scenes
 from drivelint.scene.scene import Scene, scenes_of
-from tests.drawn import SCENES, TOPICS
+from tests.scene_drives import SCENES, TOPICS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,7 +18,7 @@ from drivelint.casefile import coverage_problem, read_cases, run_cases, unused_r
 from drivelint.casefile.mutation import judge_mutants, unknown_rule_messages
 from drivelint.catalogue import load_rules
 from drivelint.sql import store
-from tests.catalogue.judged_together import Judged, judged_together
+from tests.catalogue.judged_together import CasesTogether, judged_together
 
 if TYPE_CHECKING:
     import duckdb
@@ -53,7 +53,7 @@ def test_header(rule_id: str) -> None:
 
 
 @cache
-def judged_in_part(part: int) -> dict[str, Judged]:
+def judged_in_part(part: int) -> dict[str, CasesTogether]:
     return judged_together([RULES[rule_id] for rule_id in IDS[part * RULES_AT_ONCE : (part + 1) * RULES_AT_ONCE]])
 
 

@@ -11,7 +11,7 @@ from drivelint.drive import conditions
 from drivelint.errors import UsageError
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
-from tests.evaluate.packs import INVARIANT, MEASURED, write
+from tests.evaluate.packs import INVARIANT, MEASURE, write
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -57,12 +57,12 @@ def test_words_are_taken_in_any_case() -> None:
     assert conditions.parse_env_settings(["nation=FR"]) == (("nation", "fr"),)
 
 
-def checked(tmp_path: Path, *env: str) -> Result:
+def check_result(tmp_path: Path, *env: str) -> Result:
     """Judge a drive by one rule, for wet roads in Great Britain."""
     sql = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, -1 AS required FROM ego_state"
     tables = '[applies]\nweather = ["wet"]\nnation = ["gb"]'
     if not (tmp_path / "pack").exists():
-        write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": sql}, tables=tables)
+        write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": sql}, tables=tables)
     settings = CheckOptions(
         (str(OVERTAKE / "safe.csv"),), map=OVERTAKE / "road.xodr", mapping=str(OVERTAKE / "mapping.toml"),
         rules=("pack",), rules_dirs=(tmp_path,), env=env, robustness=False,
@@ -73,7 +73,7 @@ def checked(tmp_path: Path, *env: str) -> Result:
 @pytest.mark.slow
 def test_a_drive_is_judged_in_the_conditions_given(tmp_path: Path) -> None:
     def verdict(*env: str) -> tuple[str, str]:
-        (row,) = checked(tmp_path, *env).verdicts.to_pylist()
+        (row,) = check_result(tmp_path, *env).verdicts.to_pylist()
         return row["verdict"], row["reason_code"]
 
     assert verdict() == ("unknown", "nation_unknown")
@@ -87,7 +87,7 @@ def test_a_drive_is_judged_in_the_conditions_given(tmp_path: Path) -> None:
 def test_the_result_says_in_which_conditions(tmp_path: Path) -> None:
     from drivelint.report import summary
 
-    bare, given = checked(tmp_path), checked(tmp_path, "weather=wet", "light=day")
+    bare, given = check_result(tmp_path), check_result(tmp_path, "weather=wet", "light=day")
     said = [
         {"condition": "light", "value": "day", "source": "env"},
         {"condition": "weather", "value": "wet", "source": "env"},

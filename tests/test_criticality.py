@@ -56,16 +56,16 @@ EXPLAINED = {
 }
 """(log, ego, step) that may differ, and why."""
 
-Judged = dict[str, tuple[str | None, bool | None, float | None]]
+StepMeasures = dict[str, tuple[str | None, bool | None, float | None]]
 
 
-def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], Judged]:
+def measures_by_step(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], StepMeasures]:
     """Return (ego, time in ns) -> measure -> object, whether it applies, and the rule's observed value."""
     trace = read_trace(trace_file, IngestOptions(ego=ego))
     environment = load_map(MapSource(map_file.name, map_file.read_bytes()))
     rules = {name: catalogue.load_rules()[f"criticality.{name}"] for name in MEASURES}
     tables = {table for rule in rules.values() for table in rule.reads}
-    found: dict[tuple[str, int], Judged] = {}
+    found: dict[tuple[str, int], StepMeasures] = {}
     with store.connect(threads=1) as con:
         scenes.derived(Drive(trace, environment), tables=tables, con=con)
         # somebody may be nearer than whoever is seen: what is free may be enough for a rule, and nobody is said to lead
@@ -88,11 +88,11 @@ def judged(trace_file: Path, map_file: Path, ego: str) -> dict[tuple[str, int], 
     return found
 
 
-def differences(found: Judged, expected: followers.Measure) -> list[str]:
+def differences(measures: StepMeasures, expected: followers.Measure) -> list[str]:
     """Return in words how a step differs: another lead, defined for one only, or apart by more than 1 %, the lane's heading and 0.01."""
     said = []
     for name in MEASURES:
-        other, _, value = found[name]
+        other, _, value = measures[name]
         wanted = getattr(expected, name)
         same = (
             value is None
@@ -104,9 +104,9 @@ def differences(found: Judged, expected: followers.Measure) -> list[str]:
     return said
 
 
-def told(found: Judged) -> bool:
+def knows_leader(measures: StepMeasures) -> bool:
     """Whether the product knows who leads at this step."""
-    return all(applies is not None for _, applies, _ in found.values())
+    return all(applies is not None for _, applies, _ in measures.values())
 
 
 @pytest.mark.sample(1)
@@ -114,10 +114,10 @@ def told(found: Judged) -> bool:
 def test_esmini(name: str) -> None:
     road, ego, least = ESMINI[name]
     log, xodr = shared(f"esmini/{name}.csv"), shared(f"{road}.xodr")
-    found = judged(log, xodr, ego)
+    found = measures_by_step(log, xodr, ego)
     expected = {round(t * 1e9): m for t, m in followers.esmini(log, xodr, ego).items()}
     assert expected.keys() == {t for _, t in found}
-    compared = {t: m for t, m in expected.items() if told(found[ego, t]) and not m.close_call}
+    compared = {t: m for t, m in expected.items() if knows_leader(found[ego, t]) and not m.close_call}
     assert len(compared) >= least
     assert {t: said for t, m in compared.items() if (said := differences(found[ego, t], m))} == {}
 
@@ -127,14 +127,14 @@ def test_esmini(name: str) -> None:
 def test_commonroad(name: str) -> None:
     file = shared(f"commonroad/{name}.xml")
     scenario = followers.Scenario(file)
-    found = judged(file, file, "all")
+    found = measures_by_step(file, file, "all")
     n, wrong = 0, {}
     for ego, obstacle in scenario.obstacles.items():
         if obstacle.kind == "pedestrian":
             continue
         for k, expected in scenario.measures(ego, ZIGZAG_RAD.get(name, 0.0)).items():
             step = found[ego, round(k * scenario.step_s * 1e9)]
-            if expected is None or expected.close_call or not told(step):
+            if expected is None or expected.close_call or not knows_leader(step):
                 continue
             n += 1
             if (name, ego, k) not in EXPLAINED and (said := differences(step, expected)):
@@ -156,12 +156,12 @@ def test_whoever_stands_ahead_is_as_near_on_every_course() -> None:
     drives = []
     for degrees in (0, 45, 90, 180, 250):
         way = scenes.road(start=(0.0, 0.0, math.radians(degrees)))
-        ego = scenes.moving("ego", way, t, s, way.own)
-        other = scenes.standing("other", way, t, s[-1] + length + 2.0, way.own)
+        ego = scenes.moving("ego", way, t, s, way.ego_d)
+        other = scenes.standing("other", way, t, s[-1] + length + 2.0, way.ego_d)
         drives.append(scenes.drive([ego, other], way.environment, drive_id=f"course {degrees:03}"))
     speed = 20.0 - 8.0 * braking_s
     least = min((s[-1] + 2.0 - s)[speed > 1.0] / speed[speed > 1.0])
-    found = scenes.judged(drives, rules=["criticality.ttc"])
+    found = scenes.verdict_rows(drives, rules=["criticality.ttc"])
     assert 0.7 < least < 0.72
     assert len({row["drive_id"] for row in found}) == len(drives)
     expected = ("other", "fail", pytest.approx(least, abs=0.01))

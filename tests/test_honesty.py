@@ -83,9 +83,9 @@ def _of(make: Callable[[Drive, str, Span], Drive], actor_id: str) -> Blinding:
 BLINDINGS: dict[str, Blinding] = {
     **{f"nulled {actor_id}": _of(blinding.nulled, actor_id) for actor_id in (VBP, OV, EGO)},
     **{f"dropped {actor_id}": _of(blinding.dropped, actor_id) for actor_id in (VBP, OV, EGO)},
-    "moved 30 m": lambda drive, span: blinding.moved(drive, OV, span, 30.0),
-    "moved 400 m": lambda drive, span: blinding.moved(drive, OV, span, 400.0),
-    "moved VBP": lambda drive, span: blinding.moved(drive, VBP, span, 30.0),
+    "moved 30 m": lambda drive, span: blinding.move_actor(drive, OV, span, 30.0),
+    "moved 400 m": lambda drive, span: blinding.move_actor(drive, OV, span, 400.0),
+    "moved VBP": lambda drive, span: blinding.move_actor(drive, VBP, span, 30.0),
     "hole": lambda drive, span: blinding.dropped(drive, None, span),
 }
 CUTS: dict[str, Span] = {"at t0": (8.3, 1e3), "from t0 on": (8.3, 1e3), "before t0": (8.2, 1e3), "passing": (10.0, 1e3)}
@@ -127,7 +127,7 @@ class VerdictRows:
         first = case.span not in SPANS or case.span in FIRST_SPANS
         if first in self._left:
             names = [name for name in SPANS if (name in FIRST_SPANS) == first]
-            for row in scenes.judged(drives(names), rules=RULES, profiles=PROFILES):
+            for row in scenes.verdict_rows(drives(names), rules=RULES, profiles=PROFILES):
                 self.by_drive[row["drive_id"]].append(row)
             # not before: where the reference data are absent, every test skips, not the first alone
             self._left.remove(first)
@@ -484,7 +484,7 @@ def test_a_short_sensor_range_cannot_tell_that_nobody_is_coming(verdict_rows: Ve
 @pytest.mark.ci
 def test_a_log_without_indicators_is_named_and_counted() -> None:
     """Of a pack; a rule that somebody asks for by its name is unknown."""
-    rows = scenes.judged([whole_run(run) for run in RUNS], rules=["ukhc"])
+    rows = scenes.verdict_rows([whole_run(run) for run in RUNS], rules=["ukhc"])
     for rule in ("r103.signal-before", "r103.signal-means-go", "exit-sign-signal", "signal-then-leaves"):
         told = [row for row in rows if row["rule_id"] == f"ukhc.{rule}"]
         assert len(told) == len(RUNS)

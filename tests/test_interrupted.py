@@ -269,7 +269,7 @@ def test_a_second_ctrl_c_leaves_no_temporary_folder(tmp_path: Path, scratch: Pat
     assert not list(scratch.iterdir())
 
 
-LOST = """
+LOST_INTERRUPT = """
 import os, signal
 from drivelint.cli import watching
 class Collected:
@@ -286,7 +286,9 @@ watching.bar = bar
 
 @pytest.mark.ci
 def test_a_signal_whose_interrupt_is_lost_ends_a_watch_all_the_same(tmp_path: Path) -> None:
-    with run(LOST, "watch", str(tmp_path / "never.mcap"), "--idle", "0", "--rules", "ukhc.no-collision") as process:
+    with run(
+        LOST_INTERRUPT, "watch", str(tmp_path / "never.mcap"), "--idle", "0", "--rules", "ukhc.no-collision"
+    ) as process:
         try:
             _, err = process.communicate(timeout=120)
         finally:

@@ -25,14 +25,14 @@ from drivelint.evaluate.sql_fragments import Binding
 from drivelint.sql import declarations, store
 from drivelint.sql.derivations import derivations
 from tests import blinding, scenes
-from tests.clean.judging import told
+from tests.clean.judging import story_drive
 from tests.derive.bridge_scenes import bridge, lifted
 from tests.derive.exit_scenes import exit_road, leaver
 from tests.derive.jointed_road import jointed
 from tests.derive.marked import shouldered
 from tests.derive.overtake_scene import scene
-from tests.derive.trailer_scene import drawn
-from tests.scenes import LANE, Actor, derived, drive, judged, moving, road, saying, standing, swing, tee, times
+from tests.derive.trailer_scene import trailer_behind
+from tests.scenes import LANE, Actor, derived, drive, moving, road, saying, standing, swing, tee, times, verdict_rows
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def crowd() -> tuple[Drive, ...]:
         way, actors = scene(hand)
         found.append(drive(actors, way.environment, drive_id=f"overtake-{hand}"))
         ego, vbp, ov = actors
-        blind = [ego, vbp, ov.lost((ov.t_s > 7) & (ov.t_s < 9))]
+        blind = [ego, vbp, ov.without_position((ov.t_s > 7) & (ov.t_s < 9))]
         found.append(drive(blind, way.environment, drive_id=f"blind-{hand}", egos=["ego", "vbp", "ov"]))
         holed = [a.keep((a.t_s < 10) | (a.t_s > 12)) for a in actors]
         found.append(drive(holed, way.environment, drive_id=f"holed-{hand}", sensor_range_m=150.0))
@@ -76,14 +76,14 @@ def crowd() -> tuple[Drive, ...]:
     jolted = drive(actors, way.environment, drive_id="jolted")
     jolt = ("vbp", "velocity", 8_010_000_000, 8_390_000_000, "velocity_jolt")
     doubt = dict(zip(jolted.trace.tables["doubt"].column_names, ("jolted", *jolt), strict=True))
-    found.append(blinding.changed(jolted, "doubt", lambda none: pa.Table.from_pylist([doubt], schema=none.schema)))
+    found.append(blinding.change_table(jolted, "doubt", lambda none: pa.Table.from_pylist([doubt], schema=none.schema)))
     leaving = exit_road()
     lights = tuple("right" if 7 < t < 15 else "off" for t in leaver(leaving).t_s)
     found.append(drive([replace(leaver(leaving), indicator=lights)], leaving.environment, drive_id="exit"))
     ways = tee()
     t = times(24.0)
-    ego = moving("ego", ways["straight"], t, 20 + 3 * t, ways["straight"].own)
-    ov = moving("ov", ways["home"], t, 20 + 8 * t, ways["straight"].own)
+    ego = moving("ego", ways["straight"], t, 20 + 3 * t, ways["straight"].ego_d)
+    ov = moving("ov", ways["home"], t, 20 + 8 * t, ways["straight"].ego_d)
     found.append(drive([ego, ov.keep(t < 18)], ways["straight"].environment, drive_id="tee"))
     beside = shouldered("rht")
     found.append(drive([moving("ego", beside, t, 20 + 8 * t, -1.5 * LANE)], beside.environment, drive_id="shoulder"))
@@ -91,7 +91,7 @@ def crowd() -> tuple[Drive, ...]:
     s = 5 + 12 * times(33.0)
     actors = [
         moving("ego", halves, times(33.0), s, swing(halves, s, 100, 195)),
-        standing("x", halves, times(33.0), 150, halves.own),
+        standing("x", halves, times(33.0), 150, halves.ego_d),
     ]
     found.append(drive(actors, halves.environment, drive_id="halves"))
     return (*found, rarely(), crashed(), passing(), passing("late", first_s=10.7), *bridged(), *streets())
@@ -102,8 +102,8 @@ def passing(drive_id: str = "passing", first_s: float = 0.0) -> Drive:
     way = road()
     t = times(12.0)
     aside = np.clip((t - 4.0) / 2.5, 0.0, 1.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own - np.sign(way.own) * 0.92 * aside * aside * (3 - 2 * aside))
-    parked = standing("p", way, t, 200.0, np.sign(way.own) * (LANE - 0.2))
+    ego = moving("ego", way, t, 100 + 10 * t, way.ego_d - np.sign(way.ego_d) * 0.92 * aside * aside * (3 - 2 * aside))
+    parked = standing("p", way, t, 200.0, np.sign(way.ego_d) * (LANE - 0.2))
     return drive([ego, parked.keep(t >= first_s)], way.environment, drive_id=drive_id)
 
 
@@ -111,8 +111,8 @@ def rarely() -> Drive:
     """Return a drive of one sample a second in which another crosses between two of them."""
     way = road()
     t = times(10.0, period=1.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    over = standing("over", way, t, 155.0, way.own, turned=np.pi / 2)
+    ego = moving("ego", way, t, 100 + 10 * t, way.ego_d)
+    over = standing("over", way, t, 155.0, way.ego_d, turned=np.pi / 2)
     crossing = replace(over, y=over.y + 12 * (t - 5.4), vy=np.full(len(t), 12.0))
     return drive([ego, crossing], way.environment, drive_id="rarely")
 
@@ -122,39 +122,39 @@ def crashed() -> Drive:
     way = road()
     t = times(10.0)
     before, after = np.minimum(t, 5.0), np.maximum(t - 5.0, 0.0)
-    ego = moving("ego", way, t, 100 + 12 * before + 4 * after, way.own)
-    return drive([ego, moving("hit", way, t, 164.9 + 4 * after, way.own)], way.environment, drive_id="crashed")
+    ego = moving("ego", way, t, 100 + 12 * before + 4 * after, way.ego_d)
+    return drive([ego, moving("hit", way, t, 164.9 + 4 * after, way.ego_d)], way.environment, drive_id="crashed")
 
 
 def bridged() -> tuple[Drive, ...]:
     """Return a drive with a trailer under a bridge that somebody crosses, with and without heights, or stays on to the end."""
     low, high = bridge()
     t = times(8.0)
-    ego = moving("ego", low, t, 240 + 12 * t, low.own)
-    actors = [ego, drawn("trailer", ego, kind="trailer"), moving("over", high, t, 140 + 12 * t, high.own)]
+    ego = moving("ego", low, t, 240 + 12 * t, low.ego_d)
+    actors = [ego, trailer_behind("trailer", ego, kind="trailer"), moving("over", high, t, 140 + 12 * t, high.ego_d)]
     flat, tall = (drive(actors, low.environment, drive_id=name) for name in ("bridge", "bridge-tall"))
     heights = {"ego": 0.0, "trailer": 0.3, "over": 6.0}
-    last = drive([ego, moving("over", high, t, 104 + 12 * t, high.own)], low.environment, drive_id="bridge-last")
+    last = drive([ego, moving("over", high, t, 104 + 12 * t, high.ego_d)], low.environment, drive_id="bridge-last")
     return flat, lifted(tall, heights, 0.01), lifted(last, heights, 0.01)
 
 
 def streets() -> tuple[Drive, ...]:
     """Return drives with lights, crossings, turns, changes of lane and a cut-in; two of them on one map, and with two egos."""
-    turn = told("turn", "gb", ["offside_turn"])
+    turn = story_drive("turn", "gb", ["offside_turn"])
     seen_again = blinding.nulled(blinding.renamed(turn, "turn-again"), "004", (30.0, 34.0))
     both = [with_ego(one, "002") for one in (turn, blinding.dropped(seen_again, None, (50.0, 52.0)))]
-    alone = [told(name, "gb", [name]) for name in ("zebra", "light", "motorway")]
-    return (*both, *alone, with_ego(told("cut_in", "gb", ["cut_in"]), "002"))
+    alone = [story_drive(name, "gb", [name]) for name in ("zebra", "light", "motorway")]
+    return (*both, *alone, with_ego(story_drive("cut_in", "gb", ["cut_in"]), "002"))
 
 
-def with_ego(one: Drive, actor: str) -> Drive:
+def with_ego(scene: Drive, actor: str) -> Drive:
     """Return the drive with this actor as a further ego."""
 
     def change(actors: pa.Table) -> pa.Table:
         at = actors.schema.get_field_index("is_ego")
         return actors.set_column(at, "is_ego", pc.or_(actors["is_ego"], pc.equal(actors["actor_id"], actor)))
 
-    return blinding.changed(one, "actor", change)
+    return blinding.change_table(scene, "actor", change)
 
 
 def of_each(rows: Sequence[Row]) -> dict[str, list[Row]]:
@@ -168,7 +168,7 @@ def of_each(rows: Sequence[Row]) -> dict[str, list[Row]]:
 @cache
 def expected() -> tuple[Row, ...]:
     """Return the verdicts of the crowd in one batch and on one thread."""
-    return tuple(judged(crowd(), rules=RULES, profiles=PROFILES))
+    return tuple(verdict_rows(crowd(), rules=RULES, profiles=PROFILES))
 
 
 @pytest.mark.slow
@@ -184,7 +184,7 @@ def test_alone_or_in_a_crowd() -> None:
     by_drive = of_each(expected())
     assert by_drive.keys() == {one.trace.drive_id for one in crowd()}
     for one in crowd()[2::5]:
-        assert judged([one], rules=RULES, profiles=PROFILES) == by_drive[one.trace.drive_id]
+        assert verdict_rows([one], rules=RULES, profiles=PROFILES) == by_drive[one.trace.drive_id]
 
 
 @pytest.mark.slow
@@ -198,7 +198,7 @@ def test_order_of_drives_and_of_their_rows() -> None:
             order = dice.permutation(tables[table].num_rows)
             tables[table] = tables[table].take(order)
         mixed.append(replace(one, trace=replace(one.trace, tables=tables)))
-    assert judged(mixed, rules=RULES, profiles=PROFILES) == list(expected())
+    assert verdict_rows(mixed, rules=RULES, profiles=PROFILES) == list(expected())
 
 
 @pytest.mark.slow
@@ -207,7 +207,7 @@ def test_size_of_batches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(batch, "MAX_BATCH_STATES", 10_000)
     batches = [[one for one in part if isinstance(one, batch.Drive)] for part in batch.cut_batches(crowd())]
     assert len(crowd()) > len(batches) > 3
-    assert judged(*batches, rules=RULES, profiles=PROFILES) == list(expected())
+    assert verdict_rows(*batches, rules=RULES, profiles=PROFILES) == list(expected())
 
 
 def prints(con: duckdb.DuckDBPyConnection) -> dict[str, tuple[Any, ...]]:
@@ -224,14 +224,14 @@ def test_every_derived_row_is_the_same_on_any_threads() -> None:
         assert prints(derived(*reversed(crowd()), con=con)) == first
 
 
-def busy(seed: int, others: int = 24, steps: int = 13_500) -> Drive:
+def busy(seed: int, n_others: int = 24, steps: int = 13_500) -> Drive:
     """Return a long drive round a ring of 2 km, out into the oncoming lane and back twice a minute, with others on all lanes."""
     way = road(((2000.0, 2 * math.pi / 2000.0),), ring=True, lanes=(1, 2))
     random_ = np.random.default_rng(seed)
     t = times((steps - 1) / 10)
     d = 3.5 * np.clip(1.5 * np.sin(t * math.pi / 15 + seed) - 0.5, 0, 1) - 1.75
     actors: list[Actor] = [moving("ego", way, t, 100 + 12 * t, d)]
-    for n in range(others):
+    for n in range(n_others):
         lane, sign = ((1.75, -1), (-1.75, 1), (-5.25, 1))[random_.integers(0, 3)]
         s = random_.uniform(0, 2000) + sign * random_.uniform(3, 15) * t
         actors.append(moving(f"{n:02}", way, t, s, lane))
@@ -247,7 +247,7 @@ def test_a_million_states() -> None:
     found = []
     for threads, batches in ((1, [drives]), (2, [drives[2:], drives[1::-1]])):
         with store.connect(threads=threads) as con:
-            verdicts = judged(*batches, rules=RULES, profiles=PROFILES, con=con)
+            verdicts = verdict_rows(*batches, rules=RULES, profiles=PROFILES, con=con)
             found.append((verdicts, scenes.rows(con, "FROM finding ORDER BY finding_id")))
     assert found[0] == found[1]
     verdicts, findings = found[0]
@@ -330,8 +330,8 @@ class Elsewhere(NamedTuple):
         t = times(30.0)
         s = 50 + 12 * t
         ego = moving("ego", way, t, s, scenes.swing(way, s, 150, 280))
-        vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
-        ov = moving("ov", way, t, 560 - 9 * t, way.other)
+        vbp = moving("vbp", way, t, 140 + 4 * t, way.ego_d)
+        ov = moving("ov", way, t, 560 - 9 * t, way.oncoming_d)
         actors = [replace(a, t_s=a.t_s + self.t_s) for a in (ego, vbp, ov)]
         return drive(actors, way.environment, drive_id=drive_id)
 
@@ -353,7 +353,7 @@ def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:
     """All of them are judged at once, with both that stay at home."""
     homes = {hand: Elsewhere(hand) for hand in ("rht", "lht")}
     drives = {f"{no}": move for no, move in enumerate(moves)} | homes
-    found = of_each(judged([one.drive(name) for name, one in drives.items()], rules=RULES, profiles=PROFILES))
+    found = of_each(verdict_rows([one.drive(name) for name, one in drives.items()], rules=RULES, profiles=PROFILES))
     for no, move in enumerate(moves):
         as_at_home(found[f"{no}"], found[move.hand], move.t_s)
 
@@ -361,16 +361,16 @@ def test_where_and_when_does_not_matter(moves: list[Elsewhere]) -> None:
 @pytest.mark.ci
 def test_reasons_tell_seconds_of_the_drive_whatever_the_logs_clock() -> None:
     drives = [Elsewhere("rht").drive("now"), Elsewhere("rht", t_s=1_700_000_000).drive("then")]
-    found = of_each(judged(drives, rules=RULES, profiles=PROFILES))
+    found = of_each(verdict_rows(drives, rules=RULES, profiles=PROFILES))
     said = [[row["reason"] for row in found[name]] for name in ("now", "then")]
     assert said[0] == said[1]
     assert sum(" at " in reason for reason in said[0]) > 10
 
 
-def as_at_home(moved: Sequence[Row], home: Sequence[Row], later_s: int) -> None:
+def as_at_home(moved_rows: Sequence[Row], home_rows: Sequence[Row], later_s: int) -> None:
     """Hold that the verdicts are the same, so many seconds later."""
-    assert len(moved) == len(home) > 0
-    for a, b in zip(moved, home, strict=True):
+    assert len(moved_rows) == len(home_rows) > 0
+    for a, b in zip(moved_rows, home_rows, strict=True):
         for column in (
             "rule_id",
             "profile",

@@ -7,7 +7,7 @@ from importlib.metadata import distribution
 
 from packaging.requirements import Requirement
 
-from tests.installed import installed, refused
+from tests.installed import installed, refused_licences
 from tests.shared_data import ROOT
 
 
@@ -15,7 +15,7 @@ def test_every_licence_is_known_and_none_is_strong_copyleft() -> None:
     licences = installed()
     assert {"duckdb", "msgspec", "pyarrow", "typer"} <= licences.keys()
     assert [name for name, told in licences.items() if "LGPL" in told or "Lesser" in told] == []
-    assert refused(licences) == {}
+    assert refused_licences(licences) == {}
 
 
 def test_others_would_be_refused() -> None:
@@ -34,7 +34,7 @@ def test_others_would_be_refused() -> None:
         "i": "MPL-2.0",
         "k": "EPL-2.0 OR GPL-2.0-or-later",
     }
-    assert refused({**bad, **good}).keys() == bad.keys()
+    assert refused_licences({**bad, **good}).keys() == bad.keys()
 
 
 def test_duckdb_and_its_spatial_extension_are_pinned_to_one_version() -> None:

@@ -228,7 +228,7 @@ def test_a_wide_table_with_somebody_without_a_name(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("lines", "lost"),
+    ("lines", "lost_spans"),
     [
         ([31], [(999_999_999, 1_000_000_001)]),
         ([30], [(899_999_999, 1_000_000_001)]),
@@ -238,11 +238,11 @@ def test_a_wide_table_with_somebody_without_a_name(tmp_path: Path) -> None:
     ],
 )
 def test_lines_without_a_time_were_recorded_between_their_neighbours(
-    tmp_path: Path, lines: list[int], lost: list[tuple[int | None, int | None]]
+    tmp_path: Path, lines: list[int], lost_spans: list[tuple[int | None, int | None]]
 ) -> None:
     path = drives.csv(tmp_path / "log", scene())
     head, *rows = path.read_text(encoding="utf-8").splitlines()
     path.write_text("\n".join([head, *("oops" if k in lines else row for k, row in enumerate(rows))]), encoding="utf-8")
     trace = read(path, mapping=mapping(tmp_path), ego="0")
     found = [row for row in trace.tables["quality"].to_pylist() if row["check_id"] == "lost_time"]
-    assert [(row["t_first_ns"], row["t_last_ns"]) for row in found] == lost
+    assert [(row["t_first_ns"], row["t_last_ns"]) for row in found] == lost_spans

@@ -28,7 +28,7 @@ from tests.bench import traffic
 from tests.shared_data import shared
 
 FIXTURE = Path(__file__).resolve().parents[1] / "fixtures" / "overtake"
-FEW = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")
+TWO_RULES = ("ukhc.no-collision", "ukhc.r162.safe-distance-ahead")
 SHORT = duckdb.OutOfMemoryException("could not allocate block of size 256.0 KiB (1.1 GiB/1.1 GiB used)")
 AT_COMMIT = duckdb.TransactionException(
     "TransactionContext Error: Failed to commit: failed to pin block of size 256.0 KiB (95.5 MiB/95.3 MiB used)"
@@ -52,33 +52,33 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     found: list[int] = []
     halve = MemoryLimit.halve_parts
 
-    def told(self: MemoryLimit, meetings: int) -> None:
+    def count_and_halve(self: MemoryLimit, meetings: int) -> None:
         found.append(meetings)
         halve(self, meetings)
 
-    monkeypatch.setattr(MemoryLimit, "halve_parts", told)
+    monkeypatch.setattr(MemoryLimit, "halve_parts", count_and_halve)
     return found
 
 
 def overtakes(*names: str, **options: Any) -> CheckOptions:
     """Return settings for logs of the fixture, each of three vehicles."""
-    given: dict[str, Any] = {"rules": FEW, **options}
+    given: dict[str, Any] = {"rules": TWO_RULES, **options}
     mapping = str(FIXTURE / "mapping.toml")
     return CheckOptions(
         tuple(str(FIXTURE / f"{n}.csv") for n in names), map=FIXTURE / "road.xodr", mapping=mapping, **given
     )
 
 
-def files(asked: CheckOptions, notes: Silent | None = None) -> dict[str, bytes]:
+def files(options: CheckOptions, notes: Silent | None = None) -> dict[str, bytes]:
     """Check, write the results, and return every file of them."""
-    assert asked.out is not None
-    write(check(asked, notes or Silent()), asked.out)
-    return {str(f.relative_to(asked.out)): f.read_bytes() for f in sorted(asked.out.rglob("*")) if f.is_file()}
+    assert options.out is not None
+    write(check(options, notes or Silent()), options.out)
+    return {str(f.relative_to(options.out)): f.read_bytes() for f in sorted(options.out.rglob("*")) if f.is_file()}
 
 
-def same(found: dict[str, bytes], wanted: dict[str, bytes]) -> None:
-    assert found.keys() == wanted.keys()
-    assert [name for name in found if found[name] != wanted[name]] == []
+def same(contents: dict[str, bytes], expected: dict[str, bytes]) -> None:
+    assert contents.keys() == expected.keys()
+    assert [name for name in contents if contents[name] != expected[name]] == []
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +139,7 @@ def test_what_does_not_fit_is_judged_with_fewer_egos_at_once(tmp_path: Path, hal
     assert short.drives.equals(usual.drives)
 
 
-MANY: dict[str, Any] = {"ego": "all", "margins": True}
+ALL_EGOS: dict[str, Any] = {"ego": "all", "margins": True}
 STEPS: dict[str, Callable[..., None]] = {
     "drivelint.engine.session.derive": derived,
     "drivelint.engine.session.evaluate": evaluated,
@@ -150,7 +150,7 @@ STEPS: dict[str, Callable[..., None]] = {
 @pytest.fixture(scope="module")
 def usual(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """Return the results of a log under the usual limit, which does."""
-    return files(overtakes("near_miss", out=tmp_path_factory.mktemp("usual") / "a", **MANY))
+    return files(overtakes("near_miss", out=tmp_path_factory.mktemp("usual") / "a", **ALL_EGOS))
 
 
 @pytest.mark.slow
@@ -180,7 +180,7 @@ def test_memory_that_does_not_do_is_no_error(
 
     monkeypatch.setattr(step, short)
     notes = Notes()
-    same(files(overtakes("near_miss", out=tmp_path / "b", **MANY), notes), usual)
+    same(files(overtakes("near_miss", out=tmp_path / "b", **ALL_EGOS), notes), usual)
     assert halved
     if fits == "one ego":
         assert notes.said == [], "the limit is lifted only where nothing else helps"
@@ -195,7 +195,7 @@ def test_memory_that_does_not_do_is_no_error(
 def test_a_batch_that_does_not_fit_is_halved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     other = tmp_path / "other.csv"
     other.write_text((FIXTURE / "safe.csv").read_text(encoding="utf-8") + "\n", encoding="utf-8")
-    asked = overtakes("safe", "near_miss", "collision", str(other.with_suffix("")), rules=FEW[:1])
+    asked = overtakes("safe", "near_miss", "collision", str(other.with_suffix("")), rules=TWO_RULES[:1])
     usual = check(asked, Silent())
     sizes: list[int] = []
 
@@ -222,7 +222,7 @@ def test_a_rule_that_runs_out_of_memory_is_tried_again(error: duckdb.Error, monk
 
     def short(self: Evaluation, binding: Any) -> None:
         ((limit,),) = self.con.execute("SELECT current_setting('memory_limit')").fetchall()
-        if binding.rule.id == FEW[0] and limit == "1.1 GiB":
+        if binding.rule.id == TWO_RULES[0] and limit == "1.1 GiB":
             raise error
         rule(self, binding)
 
@@ -238,18 +238,18 @@ def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     rule = Evaluation.judge_rule
 
     def short(self: Evaluation, binding: Any) -> None:
-        if binding.rule.id == FEW[0]:
+        if binding.rule.id == TWO_RULES[0]:
             raise SHORT
         rule(self, binding)
 
     monkeypatch.setattr(Evaluation, "judge_rule", short)
     rows = check(overtakes("safe", memory=memory), Silent()).verdicts.to_pylist()
-    mine = [row for row in rows if row["rule_id"] == FEW[0]]
+    mine = [row for row in rows if row["rule_id"] == TWO_RULES[0]]
     assert {row["ego_id"] for row in mine} == {row["ego_id"] for row in rows}
     assert {(row["verdict"], row["reason_code"], row["reason"]) for row in mine} == {
-        ("error", "out_of_memory", f"rule {FEW[0]}: needs more memory than is available")
+        ("error", "out_of_memory", f"rule {TWO_RULES[0]}: needs more memory than is available")
     }
-    assert "error" not in {row["verdict"] for row in rows if row["rule_id"] != FEW[0]}
+    assert "error" not in {row["verdict"] for row in rows if row["rule_id"] != TWO_RULES[0]}
 
 
 @pytest.mark.slow

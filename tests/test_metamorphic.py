@@ -24,14 +24,14 @@ from drivelint.engine.batch import Drive
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
 from tests.clean.chapters import CHAPTERS
-from tests.clean.judging import named
+from tests.clean.judging import renamed_drive
 from tests.clean.planted import PLANTED
 from tests.clean.roads import open_road
 from tests.clean.story import Story
 from tests.demo import scene as sampling
 from tests.demo import scene_drive
 from tests.demo.scenes import all_scenes
-from tests.scenes import Row, judged
+from tests.scenes import Row, verdict_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 STABLE = ("status:stable",)
 PROFILES = ("relaxed", "nominal", "aggressive", "observed")
-SAID = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code", "near_miss")
+OUTCOME = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code", "near_miss")
 TIMES = ("t_ref_ns", "t_start_ns", "t_end_ns")
 NUMBERS = ("observed", "required", "margin")
 NEVER = 1e6  # two equal speeds close in within years, or never, by their last bits
@@ -58,7 +58,7 @@ class Case(NamedTuple):
 
     def drive(self, name: str) -> Drive:
         """Return it ready for the bench, under a name."""
-        return named(Drive(self.trace, load_map(MapSource("road.xodr", self.text.encode()))), name)
+        return renamed_drive(Drive(self.trace, load_map(MapSource("road.xodr", self.text.encode()))), name)
 
 
 class Move(NamedTuple):
@@ -97,7 +97,7 @@ def sampled(rate_hz: int) -> dict[str, Case]:
         }
 
 
-def moved(case: Case, move: Move) -> Case:
+def move_case(case: Case, move: Move) -> Case:
     """Return the case elsewhere and at another time, the rows of its tables in another order."""
     cos, sin = math.cos(move.turn), math.sin(move.turn)
     said = case.trace.tables["actor_state"]
@@ -129,7 +129,7 @@ SIGNED = {  # element: attributes that change their sign with the side
     "laneLink": ("from", "to"), "validity": ("fromLane", "toLane"),
 }  # fmt: skip
 SWAPPED = {"left": "right", "right": "left"}
-KEPT = {
+UNSIGNED = {
     "OpenDRIVE", "header", "road", "link", "type", "speed", "planView", "line", "lanes", "laneSection", "center", "width", "roadMark",
     "predecessor", "successor", "signals", "objects", "outline", "outlines", "junction", "connection", "access", "userData", "priority",
     "controller", "control", "elevationProfile", "elevation", "lateralProfile", "geoReference", "markings", "marking",
@@ -141,8 +141,8 @@ def mirrored_map(text: str) -> str:
     root = etree.fromstring(text.encode())
     for element in root.iter(etree.Element):
         name = str(element.tag)
-        if name not in KEPT:
-            raise LookupError(f"<{name}>: say in SIGNED or KEPT how a mirror shows it")
+        if name not in UNSIGNED:
+            raise LookupError(f"<{name}>: say in SIGNED or UNSIGNED how a mirror shows it")
         for attribute in SIGNED.get(name, ()):
             if attribute in element.attrib:
                 element.attrib[attribute] = negated(str(element.attrib[attribute]))
@@ -190,12 +190,14 @@ def floats(table: pa.Table, name: str) -> NDArray[np.float64]:
 def verdicts(cases: Mapping[str, Case]) -> dict[str, list[Row]]:
     """Return the rows of each case."""
     rows: dict[str, list[Row]] = {name: [] for name in cases}
-    for row in judged([case.drive(name) for name, case in cases.items()], rules=STABLE, profiles=PROFILES):
+    for row in verdict_rows([case.drive(name) for name, case in cases.items()], rules=STABLE, profiles=PROFILES):
         rows[row["drive_id"]].append(row)
     return rows
 
 
-def both(before: Mapping[str, Case], after: Mapping[str, Case]) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
+def rows_before_and_after(
+    before: Mapping[str, Case], after: Mapping[str, Case]
+) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
     """Return the rows of the cases before and after a change; all are judged at once."""
     first = {f"{name}, before": case for name, case in before.items()}
     rows = verdicts(first | {f"{name}, after": case for name, case in after.items()})
@@ -206,7 +208,7 @@ def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_
     """Hold that every row is there again, so many seconds later."""
     for name, rows in before.items():
         for a, b in zip(rows, after[name], strict=True):
-            assert [a[c] for c in SAID] == [b[c] for c in SAID], (name, a, b)
+            assert [a[c] for c in OUTCOME] == [b[c] for c in OUTCOME], (name, a, b)
             expected = [None if a[c] is None else a[c] + later_s * 10**9 for c in TIMES]
             # a sample exactly on the joint of two lanes is on either, by its last bits: a stretch may begin there a sample sooner or later
             assert [b[c] for c in TIMES] == [
@@ -221,7 +223,7 @@ def same(before: Mapping[str, list[Row]], after: Mapping[str, list[Row]], later_
 def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
     """All at once: mirrored, turned and moved, its clock set, its rows shuffled. Every other case: all take twice as long."""
     some = dict(list(cases().items())[::2])
-    before, after = both(some, {name: moved(mirrored(case), FAR) for name, case in some.items()})
+    before, after = rows_before_and_after(some, {name: move_case(mirrored(case), FAR) for name, case in some.items()})
     assert {row["verdict"] for rows in before.values() for row in rows} == {"pass", "fail", "unknown", "not_applicable"}
     assert len({row["rule_id"] for rows in before.values() for row in rows if row["verdict"] == "fail"}) > 30
     same(before, after, FAR.t_s)
@@ -239,8 +241,8 @@ def test_the_world_in_a_mirror_elsewhere_and_later() -> None:
 )  # fmt: skip
 def test_where_and_when_does_not_matter(move: Move, names: set[str], mirror: bool) -> None:
     some = {name: cases()[name] for name in sorted(names)}
-    changed = {name: moved(mirrored(case) if mirror else case, move) for name, case in some.items()}
-    same(*both(some, changed), move.t_s)
+    changed = {name: move_case(mirrored(case) if mirror else case, move) for name, case in some.items()}
+    same(*rows_before_and_after(some, changed), move.t_s)
 
 
 def every_second_sample(case: Case) -> Case:
@@ -251,16 +253,16 @@ def every_second_sample(case: Case) -> Case:
     return case._replace(trace=replace(case.trace, tables=case.trace.tables | {"actor_state": kept}))
 
 
-def follows_from_the_samples(rule_id: str, few: tuple[str, ...]) -> bool:
+def follows_from_the_samples(rule_id: str, outcome_of_few: tuple[str, ...]) -> bool:
     """Return whether twice the samples may change this verdict: they halve the errors of measures."""
-    return rule_id.startswith("comfort.") and few == ("unknown", "within_error")
+    return rule_id.startswith("comfort.") and outcome_of_few == ("unknown", "within_error")
 
 
 @pytest.mark.slow
 def test_twice_the_samples_change_no_verdict() -> None:
     """The worst one by object: an object that is on course, for three samples not, and on course again has one row or two."""
     cases = sampled(20)
-    found = both({name: every_second_sample(case) for name, case in cases.items()}, cases)
+    found = rows_before_and_after({name: every_second_sample(case) for name, case in cases.items()}, cases)
     for name, rows in found[0].items():
         few, many = worst(rows), worst(found[1][name])
         assert few.keys() == many.keys(), name

@@ -1,10 +1,13 @@
-"""Names of functions, parameters, classes, fields, modules and constants are nouns and verbs: none is a bare participle or pronoun."""
+"""Names in the product and in its tests are nouns and verbs: none is a bare participle or pronoun.
+
+It holds for functions, parameters, classes, fields, modules and constants; locals are free.
+"""
 
 from __future__ import annotations
 
 import ast
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -26,7 +29,17 @@ _PRONOUNS = """
     she somebody something such that them these they this those what which who whom whose
 """
 BARE = frozenset((_PARTICIPLES + _PRONOUNS).split())
-FILES = sorted((ROOT / "src/drivelint").rglob("*.py"))
+IN_TESTS = BARE - {"expected"}  # the usual name of the parameter that a test compares with
+ROOTS = (("src/drivelint", BARE), ("tests", IN_TESTS))
+
+
+def folders() -> Iterator[Any]:
+    """Yield what lies in the roots, a folder or a file each: its files, and the words that are no names there."""
+    for root, bare in ROOTS:
+        for path in sorted((ROOT / root).iterdir()):
+            files = sorted(path.rglob("*.py")) if path.is_dir() else [path] * (path.suffix == ".py")
+            if files:
+                yield pytest.param(files, bare, id=path.relative_to(ROOT).as_posix())
 
 
 def names(path: Path) -> Iterator[tuple[int, str, bool]]:
@@ -53,9 +66,9 @@ def names(path: Path) -> Iterator[tuple[int, str, bool]]:
                 yield from ((target.lineno, target.id, False) for target in targets if isinstance(target, ast.Name))
 
 
-def is_bare(name: str, *, of_function: bool) -> bool:
+def is_bare(name: str, bare: frozenset[str] = BARE, *, of_function: bool) -> bool:
     word = re.sub(r"^_+|_+$", "", name).lower()
-    return not name.startswith("__") and word in BARE and not (of_function and word in VERBS)
+    return not name.startswith("__") and word in bare and not (of_function and word in VERBS)
 
 
 @pytest.mark.parametrize(
@@ -74,12 +87,15 @@ def test_what_is_bare(name: str, of_function: bool, expected: bool) -> None:
     assert is_bare(name, of_function=of_function) is expected
 
 
-@pytest.mark.parametrize("folder", sorted({path.relative_to(ROOT / "src/drivelint").parts[0] for path in FILES}))
-def test_no_name_is_a_bare_participle_or_pronoun(folder: str) -> None:
-    mine = [path for path in FILES if path.relative_to(ROOT / "src/drivelint").parts[0] == folder]
+def test_expected_is_a_name_in_tests_alone() -> None:
+    assert [is_bare("expected", bare, of_function=False) for _, bare in ROOTS] == [True, False]
+
+
+@pytest.mark.parametrize(("files", "bare"), folders())
+def test_no_name_is_a_bare_participle_or_pronoun(files: list[Path], bare: frozenset[str]) -> None:
     assert not [
         f"{path.relative_to(ROOT)}:{line} {name}"
-        for path in mine
+        for path in files
         for line, name, of_function in names(path)
-        if is_bare(name, of_function=of_function)
+        if is_bare(name, bare, of_function=of_function)
     ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.scenes import drive, judged, moving, road, times
+from tests.scenes import drive, moving, road, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -24,7 +24,7 @@ def braking(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.
     speed = 25 + np.cumsum(accel) * 0.001
     place = 50 + np.cumsum(speed) * 0.001
     t = times(14.0, period=1 / rate)
-    ego = moving("ego", way, t, np.interp(t, fine, place), way.own)
+    ego = moving("ego", way, t, np.interp(t, fine, place), way.ego_d)
     return drive([ego], way.environment, drive_id=f"{rate} Hz")
 
 
@@ -41,6 +41,6 @@ def braking(rate: int, hardest_mps2: float, ramp_s: float, then_mps2: float = 0.
     ],
 )
 def test_comfort(hardest_mps2: float, ramp_s: float, then_mps2: float, verdict: str) -> None:
-    rows = judged([braking(rate, hardest_mps2, ramp_s, then_mps2) for rate in RATES], rules=["comfort.nuplan"])
+    rows = verdict_rows([braking(rate, hardest_mps2, ramp_s, then_mps2) for rate in RATES], rules=["comfort.nuplan"])
     assert {row["drive_id"]: row["verdict"] for row in rows} == {f"{rate} Hz": verdict for rate in RATES}
     assert len(rows) == len(RATES)

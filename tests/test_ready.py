@@ -215,11 +215,11 @@ def test_the_action_fails_where_the_check_does_and_shows_the_outcome(drives: Pat
     assert "${{" not in check["run"], "what is given is no part of the script"
 
 
-def action_step(folder: Path, **given: str) -> tuple[subprocess.CompletedProcess[str], list[str], str]:
+def action_step(folder: Path, **given_inputs: str) -> tuple[subprocess.CompletedProcess[str], list[str], str]:
     """Run the action's check with a `drivelint` that only notes its words; return the run, these words, and the summary."""
     action = yaml.safe_load((ROOT / ".github" / "action" / "action.yml").read_text(encoding="utf-8"))
     (check,) = (step for step in action["runs"]["steps"] if step.get("id") == "check")
-    inputs = {name: about.get("default", "") for name, about in action["inputs"].items()} | given
+    inputs = {name: about.get("default", "") for name, about in action["inputs"].items()} | given_inputs
     env = {
         name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda said: inputs[said[1]], text)
         for name, text in check["env"].items()

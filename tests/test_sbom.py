@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from packaging.utils import canonicalize_name
 
-from tests.installed import installed, refused
+from tests.installed import installed, refused_licences
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def test_the_sbom_is_what_the_wheel_brings(tmp_path: Path) -> None:
     assert found.keys() == due.keys()
     assert all(re.fullmatch(r"pkg:pypi/[\w.-]+@[\w.+-]+", component["purl"]) for component in found.values())
     said = {name: licences(component) for name, component in found.items()}
-    assert refused(said) == {}
+    assert refused_licences(said) == {}
     inner = {name: {each["name"] for each in found[name].get("components", ())} for name in ("cryptography", "numpy")}
     assert "openssl" in {name.lower() for name in inner["cryptography"]} or len(inner["cryptography"]) > 10
     assert any("openblas" in name for name in inner["numpy"])

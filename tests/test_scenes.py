@@ -16,7 +16,7 @@ from drivelint import catalogue
 from drivelint.scene import document
 from drivelint.scene.judge import differences, gating_rules, judge_scenes, rule_selectors_for_scenes
 from drivelint.scene.scene import Scene, scenes_of
-from tests.drawn import SCENES, TOPICS
+from tests.scene_drives import SCENES, TOPICS
 
 BY_CI: Final = {"crossroads", "overtaking"}
 

@@ -24,7 +24,7 @@ OPTIONS = {
 OVERTAKE = ROOT / "fixtures" / "overtake"
 
 
-def written(tmp_path: Path, text: str) -> Path:
+def settings_file(tmp_path: Path, text: str) -> Path:
     file = tmp_path / "drivelint.toml"
     file.write_text(text, encoding="utf-8")
     return file
@@ -35,7 +35,7 @@ def test_no_file_says_nothing(tmp_path: Path) -> None:
 
 
 def test_values_are_those_of_the_options(tmp_path: Path) -> None:
-    file = written(tmp_path, 'map = "road.xodr"\nstrict = true\nsensor-range = 80\nrules = ["ukhc", "rss"]\n')
+    file = settings_file(tmp_path, 'map = "road.xodr"\nstrict = true\nsensor-range = 80\nrules = ["ukhc", "rss"]\n')
     assert read_settings(OPTIONS, file) == {
         "map_": "road.xodr",
         "strict": True,
@@ -45,7 +45,7 @@ def test_values_are_those_of_the_options(tmp_path: Path) -> None:
 
 
 def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
-    file = written(tmp_path, '[env]\nnation = "gb"\nengaged = true\n')
+    file = settings_file(tmp_path, '[env]\nnation = "gb"\nengaged = true\n')
     assert read_settings(OPTIONS, file) == {"env": ["nation=gb", "engaged=yes"]}
 
 
@@ -64,7 +64,7 @@ def test_conditions_are_a_table_of_their_own(tmp_path: Path) -> None:
 )
 def test_what_is_not_understood_is_refused(tmp_path: Path, text: str, says: str) -> None:
     with pytest.raises(UsageError, match=rf"drivelint\.toml: .*{says}"):
-        read_settings(OPTIONS, written(tmp_path, text))
+        read_settings(OPTIONS, settings_file(tmp_path, text))
 
 
 def test_the_nearest_file_upwards_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +72,7 @@ def test_the_nearest_file_upwards_counts(tmp_path: Path, monkeypatch: pytest.Mon
     below.mkdir(parents=True)
     monkeypatch.chdir(below)
     assert find_settings() is None
-    written(tmp_path, 'map = "far.xodr"')
+    settings_file(tmp_path, 'map = "far.xodr"')
     assert find_settings() == tmp_path / "drivelint.toml"
     (tmp_path / "a" / "pyproject.toml").write_text('[tool.drivelint]\nmap = "near.xodr"\n', encoding="utf-8")
     assert find_settings() == tmp_path / "a" / "pyproject.toml"
@@ -156,7 +156,7 @@ def test_the_file_sets_options_and_the_command_line_overrides_them(
         'fail-on = "never"',
         "quiet = true",
     ]
-    written(tmp_path, "\n".join(lines))
+    settings_file(tmp_path, "\n".join(lines))
     monkeypatch.chdir(tmp_path)
     collision = str(OVERTAKE / "collision.csv")
     assert run(monkeypatch, "check", collision) == 0
@@ -167,7 +167,7 @@ def test_the_file_sets_options_and_the_command_line_overrides_them(
 def test_a_map_that_does_not_exist_names_the_file_unless_the_command_line_has_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    written(tmp_path, 'map = "roda.xodr"\nquiet = true')
+    settings_file(tmp_path, 'map = "roda.xodr"\nquiet = true')
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, "inspect", "x.csv") == 2
     assert "drivelint.toml: map = 'roda.xodr': does not exist: correct it, or give --map" in capfd.readouterr().err
@@ -179,7 +179,7 @@ def test_a_map_that_does_not_exist_names_the_file_unless_the_command_line_has_an
 def test_a_mistake_in_it_names_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], text: str
 ) -> None:
-    written(tmp_path, text)
+    settings_file(tmp_path, text)
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, "check", "x.csv") == 2
     out, err = capfd.readouterr()
@@ -192,7 +192,7 @@ def test_a_wrong_parameter_names_the_file_only_if_it_stands_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     wrong = "ukhc.overtake-zone.margn_s=0.9"
-    written(tmp_path, f'param = ["{wrong}"]\nquiet = true')
+    settings_file(tmp_path, f'param = ["{wrong}"]\nquiet = true')
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, "check", str(OVERTAKE / "safe.csv")) == 2
     assert capfd.readouterr().err.endswith("it has: margin_s (see drivelint.toml)\n")

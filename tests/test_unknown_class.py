@@ -10,9 +10,9 @@ import pytest
 
 from tests import blinding
 from tests.clean.blinded import on_the_road
-from tests.clean.judging import PACKS, stable, told
+from tests.clean.judging import PACKS, stable, story_drive
 from tests.clean.planted import PLANTED
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,14 +49,14 @@ OVERTAKING = {
 }
 
 
-def classed(drive: Drive, who: str, word: str | None) -> Drive:
+def classed(drive: Drive, actor_id: str, word: str | None) -> Drive:
     """Return the drive with this class of an actor."""
 
     def change(actors: pa.Table) -> pa.Table:
-        rows = [row | {"actor_class": word} if row["actor_id"] == who else row for row in actors.to_pylist()]
+        rows = [row | {"actor_class": word} if row["actor_id"] == actor_id else row for row in actors.to_pylist()]
         return pa.Table.from_pylist(rows, schema=actors.schema)
 
-    return blinding.changed(drive, "actor", change)
+    return blinding.change_table(drive, "actor", change)
 
 
 def unsaid(drive: Drive) -> Iterator[tuple[str, Drive]]:
@@ -85,11 +85,11 @@ def test_no_pass_and_no_fail_from_a_class_that_is_not_known(nation: str, chapter
             changes.append(planted.change)
     drives = []
     for n, change in enumerate(changes):
-        whole = on_the_road(told("d", nation, [chapter], change))
+        whole = on_the_road(story_drive("d", nation, [chapter], change))
         drives.append(blinding.renamed(whole, f"{n}/"))
         drives += [blinding.renamed(less, f"{n}/{what}") for what, less in unsaid(whole)]
     said: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
-    for row in judged(drives, rules=stable(PACKS[nation])):
+    for row in verdict_rows(drives, rules=stable(PACKS[nation])):
         said[row["drive_id"]][row["rule_id"]].add(row["verdict"])
     wrong = []
     for name, rules in said.items():

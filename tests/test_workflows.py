@@ -18,7 +18,7 @@ from tests.shared_data import ROOT
 
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").iterdir())
 ACTION = ROOT / ".github" / "action" / "action.yml"
-SHOWN = {
+GUIDE_WORKFLOWS = {
     f"{page.stem}-{block.argument}": block.body
     for page in (FOLDER / "ci.md", FOLDER / "ready-made.md")
     for block in blocks(page)
@@ -43,8 +43,8 @@ def workflow(name: str) -> dict[str, Any]:
 
 
 def test_workflows_and_action_keep_to_their_schemas(tmp_path: Path) -> None:
-    assert len(SHOWN) >= 3
-    for name, text in SHOWN.items():
+    assert len(GUIDE_WORKFLOWS) >= 3
+    for name, text in GUIDE_WORKFLOWS.items():
         (tmp_path / f"{name}.yml").write_text(text, encoding="utf-8")
     assert faults("workflows", *WORKFLOWS, *sorted(tmp_path.iterdir())) == ""
     assert faults("actions", ACTION) == ""

@@ -50,11 +50,11 @@ def before(place: Place) -> list[Row]:
         if no == 0 and runs > 1:  # so that no tree is compiled while its time counts
             for tree in trees.values():
                 _timed(tree, each, place.home)
-        taken: dict[str, list[Timed]] = {side: [] for side in trees}
+        timings: dict[str, list[Timed]] = {side: [] for side in trees}
         for _ in range(runs):
             for side, tree in trees.items():
-                taken[side].append(_timed(tree, each, place.home))
-        rows += _compared(f"{then.name}, {each.name}", taken)
+                timings[side].append(_timed(tree, each, place.home))
+        rows += _compared(f"{then.name}, {each.name}", timings)
     return rows
 
 
@@ -77,17 +77,17 @@ def densest(folder: Path) -> Path | None:
     return max(found, key=lambda path: path.read_bytes().count(b"<state>"), default=None)
 
 
-def _timed(tree: Tree, what: Input, home: Path) -> Timed:
+def _timed(tree: Tree, drive_input: Input, home: Path) -> Timed:
     """Check in a process of its own that imports `drivelint` from the tree, and this bench from the present one."""
     asked, answer = home / "job.json", home / "answer.json"
     job = Job(
         source=str(tree.source),
         answer=str(answer),
         out=str(home / "out"),
-        traces=[str(what.traces)],
-        map=None if what.road is None else str(what.road),
-        rules=list(what.rules),
-        ego=what.ego,
+        traces=[str(drive_input.traces)],
+        map=None if drive_input.road is None else str(drive_input.road),
+        rules=list(drive_input.rules),
+        ego=drive_input.ego,
     )
     asked.write_text(json.dumps(job._asdict()), encoding="utf-8")
     answer.unlink(missing_ok=True)
@@ -97,7 +97,7 @@ def _timed(tree: Tree, what: Input, home: Path) -> Timed:
     command = [str(tree.python), "-P", "-m", timed_check.__name__, str(asked)]
     done = subprocess.run(command, cwd=home, env=env, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise RuntimeError(f"{tree.name}, {what.name}: {done.stderr.strip()}")
+        raise RuntimeError(f"{tree.name}, {drive_input.name}: {done.stderr.strip()}")
     told = json.loads(answer.read_text(encoding="utf-8"))
     return Timed({stage: Span(*seconds) for stage, seconds in told["spent"].items()}, told["verdicts"])
 
@@ -112,9 +112,9 @@ def _about(now: Tree, then: Tree, runs: int) -> Row:
     return Row(f"before {then.name}", "dependencies that differ", len(then.differs), "", note=note)
 
 
-def _compared(section: str, taken: dict[str, list[Timed]]) -> list[Row]:
+def _compared(section: str, timings: dict[str, list[Timed]]) -> list[Row]:
     now, then = (
-        {stage: median([timed.spent[stage] for timed in taken[side]]) for stage in taken[side][0].spent}
+        {stage: median([timed.spent[stage] for timed in timings[side]]) for stage in timings[side][0].spent}
         for side in ("now", "before")
     )
     rows = [
@@ -129,12 +129,12 @@ def _compared(section: str, taken: dict[str, list[Timed]]) -> list[Row]:
         )
         for stage, spent in now.items()
     ]
-    counts, old = taken["now"][0].verdicts, taken["before"][0].verdicts
-    note = f"now {_told(counts)}; before {_told(old)}"
+    counts, old = timings["now"][0].verdicts, timings["before"][0].verdicts
+    note = f"now {_counts_text(counts)}; before {_counts_text(old)}"
     return [*rows, Row(section, "verdicts", _ratio(sum(counts.values()), sum(old.values())), "x", note=note)]
 
 
-def _told(verdicts: dict[str, int]) -> str:
+def _counts_text(verdicts: dict[str, int]) -> str:
     return ", ".join(f"{n} {verdict}" for verdict, n in sorted(verdicts.items())) or "none"
 
 

@@ -24,11 +24,11 @@ MINUTES: Final = 60.0
 SPINNING: Final = 2
 
 
-class Checked(NamedTuple):
+class CheckRun(NamedTuple):
     """What a check came to: its exit code, what it said on both streams, its files, and what it took."""
 
     code: int
-    said: str
+    output: str
     notes: str
     files: dict[str, bytes]
     wall_s: float
@@ -47,33 +47,33 @@ def spinning(n: int = SPINNING) -> Iterator[None]:
         yield
 
 
-def checked(words: Sequence[str | Path], out: Path) -> Checked:
+def run_check(words: Sequence[str | Path], out: Path) -> CheckRun:
     """Check a drive in a process of its own, and take its result away from `out`."""
     command = [sys.executable, "-m", "drivelint", "check", *words, "--out", out, "--no-cache", "--quiet"]
     begin = time.monotonic()
     with (
-        tempfile.TemporaryFile("w+", encoding="utf-8") as said,
+        tempfile.TemporaryFile("w+", encoding="utf-8") as output,
         tempfile.TemporaryFile("w+", encoding="utf-8") as notes,
     ):
-        running = subprocess.Popen(command, stdout=said, stderr=notes, cwd=out.parent)
+        running = subprocess.Popen(command, stdout=output, stderr=notes, cwd=out.parent)
         _, status, used = os.wait4(running.pid, 0)
         running.returncode = os.waitstatus_to_exitcode(status)
         wall_s = time.monotonic() - begin
-        said.seek(0)
+        output.seek(0)
         notes.seek(0)
         files = {str(file.relative_to(out)): file for file in sorted(out.rglob("*")) if file.is_file()}
         content = {name: file.read_bytes() for name, file in files.items()}
         for file in files.values():
             file.unlink()
         cpu_s, memory_mib = used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
-        return Checked(running.returncode, said.read(), notes.read(), content, wall_s, cpu_s, memory_mib)
+        return CheckRun(running.returncode, output.read(), notes.read(), content, wall_s, cpu_s, memory_mib)
 
 
-def differing(quiet: Checked, busy: Checked) -> list[str]:
+def differing(quiet: CheckRun, busy: CheckRun) -> list[str]:
     """Return what differs: names of files, the exit code, the streams."""
     names = sorted(quiet.files.keys() | busy.files.keys())
     found = [name for name in names if quiet.files.get(name) != busy.files.get(name)]
-    return found + [name for name in ("code", "said", "notes") if getattr(quiet, name) != getattr(busy, name)]
+    return found + [name for name in ("code", "output", "notes") if getattr(quiet, name) != getattr(busy, name)]
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -89,11 +89,11 @@ def main(arguments: Sequence[str]) -> int:
         runs = {}
         for name, n in (("quiet", 0), ("busy", SPINNING)):
             with spinning(n):
-                ran = runs[name] = checked(words, home / "out")
+                ran = runs[name] = run_check(words, home / "out")
             took = f"{ran.wall_s:.0f} s, CPU {ran.cpu_s:.0f} s, memory {ran.memory_mib:.0f} MiB"
             print(f"{name}: exit {ran.code}, {len(ran.files)} files, {took}\n{ran.notes}", flush=True)
         wrong = differing(runs["quiet"], runs["busy"])
-        print(runs["quiet"].said)
+        print(runs["quiet"].output)
         print(f"{', '.join(runs['quiet'].files)}\n{'all the same' if not wrong else 'differ: ' + ', '.join(wrong)}")
         return int(bool(wrong) or not runs["quiet"].files)
 

@@ -25,11 +25,11 @@ class Span(NamedTuple):
     wall: float = 0.0
     cpu: float = 0.0
 
-    def __add__(self, other: tuple[Any, ...]) -> Span:
-        return Span(self.wall + other[0], self.cpu + other[1])
+    def __add__(self, span: tuple[Any, ...]) -> Span:
+        return Span(self.wall + span[0], self.cpu + span[1])
 
-    def __sub__(self, other: Span) -> Span:
-        return Span(self.wall - other.wall, self.cpu - other.cpu)
+    def __sub__(self, span: Span) -> Span:
+        return Span(self.wall - span.wall, self.cpu - span.cpu)
 
 
 def now() -> Span:

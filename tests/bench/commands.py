@@ -28,7 +28,7 @@ NOW, BEFORE = "now", "before"
 ONE_RULE = "ukhc.r126.thinking-gap"
 
 
-class Taken(NamedTuple):
+class ProcessCost(NamedTuple):
     """What one process took. `peak`: the most memory in bytes, of the largest process."""
 
     span: Span
@@ -42,7 +42,7 @@ def demo(place: Place) -> list[Row]:
     logs, road = sorted(map(str, folder.glob("*.mcap"))), ["--map", str(folder / "road.xodr")]
     out = ["--out", str(place.home / "out"), "--overwrite"]
     plain = ["--no-robustness", "--no-cache", "--no-annotate"]
-    taken = _in_turn(
+    costs = _in_turn(
         place,
         {
             "check": ["check", *logs, *road, *out, "--no-cache"],
@@ -55,12 +55,12 @@ def demo(place: Place) -> list[Row]:
         },
         place.sizes.runs,
     )
-    cpu = {name: median([each.span for each in each_side[NOW]]).cpu for name, each_side in taken.items()}
+    cpu = {name: median([each.span for each in each_side[NOW]]).cpu for name, each_side in costs.items()}
     return [
         Row("demo", "check with defaults", cpu["check"], bar=Bar(5.0), note="CPU"),
         Row("demo", "defaults / no copies", cpu["check"] / cpu["check, no copies"], "x", bar=Bar(1.5), note="CPU"),
         Row("demo", "second check / first", cpu["check again"] / cpu["check"], "x", bar=Bar(0.1), note="CPU"),
-        *_rows("demo", taken, {"one drive": 0.5, "one rule, one drive": 0.35, "rules list": 0.5, "inspect": 0.5}),
+        *_rows("demo", costs, {"one drive": 0.5, "one rule, one drive": 0.35, "rules list": 0.5, "inspect": 0.5}),
     ]
 
 
@@ -71,7 +71,7 @@ def fleet(place: Place) -> list[Row]:
         traffic.write_folder(folder / f"s{n:04d}", place.sizes.short, n)
     check = ["check", str(folder), "--map", str(place.road), "--rules", "ukhc.*", "--no-cache", "--no-annotate"]
     out = ["--out", str(place.home / "out"), "--overwrite"]
-    taken = _in_turn(
+    costs = _in_turn(
         place,
         {
             "check": [*check, *out],
@@ -81,8 +81,8 @@ def fleet(place: Place) -> list[Row]:
         },
         max(1, place.sizes.runs // 3),  # each takes half a minute
     )
-    span = {name: median([each.span for each in each_side[NOW]]) for name, each_side in taken.items()}
-    peak = max(each.peak for each in taken["check"][NOW])
+    span = {name: median([each.span for each in each_side[NOW]]) for name, each_side in costs.items()}
+    peak = max(each.peak for each in costs["check"][NOW])
     workers = span["one worker"].wall / span["two workers"].wall
     return [
         Row(
@@ -95,16 +95,18 @@ def fleet(place: Place) -> list[Row]:
         ),
         Row("fleet", "two workers are faster", workers, "x", bar=Bar(1.7, at_least=True), note="wall"),
         Row("fleet", "peak memory", peak / 1e9, "GB", bar=Bar(0.8), note=f"{place.sizes.fleet} drives, defaults"),
-        *_rows("fleet", taken, {"check, no copies": 0.5}),
+        *_rows("fleet", costs, {"check, no copies": 0.5}),
     ]
 
 
-def _in_turn(place: Place, commands: Mapping[str, Sequence[str]], rounds: int) -> dict[str, dict[str, list[Taken]]]:
+def _in_turn(
+    place: Place, commands: Mapping[str, Sequence[str]], rounds: int
+) -> dict[str, dict[str, list[ProcessCost]]]:
     """Return name -> side -> what each round took, after one that does not count; a single one is not warmed up for."""
     trees = {NOW: commit.present()}
     if place.commit != "HEAD":
         trees[BEFORE] = commit.unpacked(place.commit, place.home)
-    taken: dict[str, dict[str, list[Taken]]] = {name: {side: [] for side in trees} for name in commands}
+    costs: dict[str, dict[str, list[ProcessCost]]] = {name: {side: [] for side in trees} for name in commands}
     for no in range(rounds + (rounds > 1)):
         for name, arguments in commands.items():
             for side, tree in trees.items():
@@ -112,11 +114,11 @@ def _in_turn(place: Place, commands: Mapping[str, Sequence[str]], rounds: int) -
                     continue  # an older `check` has one worker, and no such option
                 found = _run(tree, arguments, place.home)
                 if no or rounds == 1:
-                    taken[name][side].append(found)
-    return taken
+                    costs[name][side].append(found)
+    return costs
 
 
-def _run(tree: Tree, arguments: Sequence[str], home: Path) -> Taken:
+def _run(tree: Tree, arguments: Sequence[str], home: Path) -> ProcessCost:
     """Run drivelint of a tree. Errors: `RuntimeError` with its message if it ends as no check ends."""
     shutil.rmtree(home / "out", ignore_errors=True)
     known = [word for word in arguments if tree == commit.present() or word != "--no-cache"]
@@ -135,13 +137,13 @@ def _run(tree: Tree, arguments: Sequence[str], home: Path) -> Taken:
         raise RuntimeError(f"{tree.name}: drivelint {' '.join(known[:2])} ended with {process.returncode}: {told}")
     wall = time.perf_counter() - begin
     # the children of the process are in its times, if it waited for them; ru_maxrss is of the largest
-    return Taken(Span(wall, used.ru_utime + used.ru_stime), used.ru_maxrss * 1024)
+    return ProcessCost(Span(wall, used.ru_utime + used.ru_stime), used.ru_maxrss * 1024)
 
 
-def _rows(section: str, taken: Mapping[str, Mapping[str, list[Taken]]], bars: Mapping[str, float]) -> list[Row]:
+def _rows(section: str, costs: Mapping[str, Mapping[str, list[ProcessCost]]], bars: Mapping[str, float]) -> list[Row]:
     """Return a row per command: the time of now, or, with another commit, the ratio to it."""
     rows = []
-    for name, sides in taken.items():
+    for name, sides in costs.items():
         spans = {side: median([each.span for each in runs]) for side, runs in sides.items() if runs}
         if not sides.get(BEFORE):
             rows.append(Row(section, name, spans[NOW].wall, cpu=spans[NOW].cpu))

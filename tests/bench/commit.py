@@ -52,9 +52,9 @@ def unpacked(commit: str, home: Path) -> Tree:
     folder = home / "tree"
     with tarfile.open(fileobj=io.BytesIO(_git("archive", "--format=tar", name))) as archive:
         archive.extractall(folder, filter="data")
-    needed = dependencies(folder / "pyproject.toml")
-    differs = unmet(needed)
-    python = _environment(home / "venv", needed, differs) if differs else _python()
+    requirements = dependencies(folder / "pyproject.toml")
+    differs = unmet(requirements)
+    python = _environment(home / "venv", requirements, differs) if differs else _python()
     return Tree(name, folder / "src", python, tuple(differs))
 
 
@@ -64,23 +64,23 @@ def dependencies(pyproject: Path) -> list[str]:
     return found
 
 
-def unmet(needed: Sequence[str]) -> list[str]:
+def unmet(requirements: Sequence[str]) -> list[str]:
     """Return the requirements that the present environment does not meet."""
-    return [each for each in needed if not _met(Requirement(each))]
+    return [each for each in requirements if not _met(Requirement(each))]
 
 
-def _met(needed: Requirement) -> bool:
-    if needed.marker and not needed.marker.evaluate():
+def _met(requirement: Requirement) -> bool:
+    if requirement.marker and not requirement.marker.evaluate():
         return True
     try:
-        return needed.specifier.contains(version(needed.name), prereleases=True)
+        return requirement.specifier.contains(version(requirement.name), prereleases=True)
     except PackageNotFoundError:
         return False
 
 
-def _environment(folder: Path, needed: Sequence[str], differs: Sequence[str]) -> Path:
+def _environment(folder: Path, requirements: Sequence[str], differs: Sequence[str]) -> Path:
     """Install what a commit depends on; all that does not differ has the version of the present environment."""
-    same = [Requirement(each) for each in needed if each not in differs]
+    same = [Requirement(each) for each in requirements if each not in differs]
     # a newer pyarrow beside an older duckdb would be measured as a change of ours
     pins = [f"{each.name}=={version(each.name)}" for each in same if not each.marker or each.marker.evaluate()]
     subprocess.run([sys.executable, "-m", "venv", folder], check=True)

@@ -34,8 +34,8 @@ def copying(place: Place) -> list[Row]:
     # `check` reads and judges the log too: only the annotation counts here
     taken = by_stage(partial(stages.check, [str(log)], place.road, out), runs)["annotate"]
     (annotated,) = (out / "annotated").glob("*.mcap")
-    topics, told = _told(log)
-    if _told(annotated, topics)[1] != told:
+    topics, told = _topics_and_hash(log)
+    if _topics_and_hash(annotated, topics)[1] != told:
         raise AssertionError(f"{annotated}: the messages of the original are not what they were")
     plain = repeat(partial(_copy, log, place.home / "plain.mcap"), runs)
     note = f"{size:.0f} MB, checked with CRCs by the stock reader: messages identical; median of {runs}"
@@ -80,7 +80,7 @@ def _log(place: Place) -> Path:
     return path
 
 
-def _told(path: Path, only: frozenset[str] | None = None) -> tuple[frozenset[str], str]:
+def _topics_and_hash(path: Path, only: frozenset[str] | None = None) -> tuple[frozenset[str], str]:
     """Return the topics of a log, and a hash of every message on them (on `only`, if given) in the order of the file."""
     digest = hashlib.sha256()
     topics = set()

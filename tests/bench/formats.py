@@ -77,10 +77,10 @@ def _logs(place: Place) -> Iterator[Log]:
     yield Log("CommonRoad", lambda: _commonroad(home / "log.xml", few(), shape.hertz))
     steps = round(shape.seconds * shape.hertz)
     for name, write in ros.logs(steps).items():
-        yield Log(name, partial(_written, write, home / "ros.mcap"))
+        yield Log(name, partial(_write_log, write, home / "ros.mcap"))
 
 
-def _written(write: Callable[[Path], None], path: Path) -> Path:
+def _write_log(write: Callable[[Path], None], path: Path) -> Path:
     write(path)
     return path
 

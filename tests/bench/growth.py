@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from tests.bench.place import Place
 
-SHOWN = ("derive", "rules", "report")
+NOTE_STAGES = ("derive", "rules", "report")
 
 
 def growth(place: Place) -> list[Row]:
@@ -56,7 +56,7 @@ def growth(place: Place) -> list[Row]:
                 _grown(spent, first, "whole", n),
                 "x",
                 bar=Bar(1.15),
-                note=", ".join(f"{s} {_grown(spent, first, s, n):.2f}" for s in SHOWN)
+                note=", ".join(f"{s} {_grown(spent, first, s, n):.2f}" for s in NOTE_STAGES)
                 + f"; wall {spent['whole'].wall / first['whole'].wall * sizes.lengths[0] / n:.2f}",
             )
         )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tests.bench.clock import Span
     from tests.bench.place import Place
 
-MOST = 1.3
+MOST_TIMES_PARQUET = 1.3
 OPTIONS = IngestOptions(need_ego=False)
 
 
@@ -41,7 +41,7 @@ def perception(place: Place) -> list[Row]:
                 log_span.cpu / twin_span.cpu,
                 "times Parquet",
                 log_span.cpu,
-                Bar(MOST),
+                Bar(MOST_TIMES_PARQUET),
                 note=note,
             )
         )

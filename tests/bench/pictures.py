@@ -37,5 +37,5 @@ def pictures(place: Place) -> list[Row]:
     return rows
 
 
-def _check(bag: Path, out: Path, shown: bool) -> None:
-    drivelint.check(bag, out=out, overwrite=True, ego_size="4.5,1.8", pictures=shown)
+def _check(bag: Path, out: Path, with_pictures: bool) -> None:
+    drivelint.check(bag, out=out, overwrite=True, ego_size="4.5,1.8", pictures=with_pictures)

@@ -59,11 +59,11 @@ def _operators(plan: dict[str, Any]) -> str:
     return "; ".join(f"{name} {seconds:.2f} s" for seconds, name in sorted(found, reverse=True)[:OPERATORS])
 
 
-def _collect(node: dict[str, Any], found: list[tuple[float, str]]) -> None:
+def _collect(node: dict[str, Any], operator_times: list[tuple[float, str]]) -> None:
     if "operator_timing" in node:
         about = node.get("extra_info", {})
         what = next((str(about[key]) for key in ("Conditions", "Table", "CTE Name", "Expressions") if key in about), "")
         name = f"{node['operator_name'].strip()} ({' '.join(what.split())[:60]}) -> {node['operator_cardinality']:,}"
-        found.append((node["operator_timing"], name.replace("|", "/")))
+        operator_times.append((node["operator_timing"], name.replace("|", "/")))
     for child in node.get("children", []):
-        _collect(child, found)
+        _collect(child, operator_times)

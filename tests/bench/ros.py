@@ -36,7 +36,7 @@ def detections() -> ros_log.Message:
     return ros_log.detections(1.0, *named)
 
 
-def moved(message: ros_log.Message, steps: int) -> Iterator[tuple[float, bytes]]:
+def moved_messages(message: ros_log.Message, steps: int) -> Iterator[tuple[float, bytes]]:
     """Yield a message again and again, its time stamp and its places moved on."""
     _, name, _, content = message
     data = bytearray(ros_log.encode(name, content))
@@ -59,7 +59,7 @@ def write_ros(path: Path, message: ros_log.Message, steps: int) -> None:
         for topic, name, _, _ in (message, ros_log.odometry(1.0, 0.0, 0.0)):
             schema = writer.register_schema(name.replace("/", "/msg/"), "ros2msg", ros_log.definition(name).encode())
             channels.append(writer.register_channel(topic, "cdr", schema))
-        for i, (t_s, data) in enumerate(moved(message, steps)):
+        for i, (t_s, data) in enumerate(moved_messages(message, steps)):
             t_ns = round(t_s * 1e9)
             writer.add_message(channels[0], t_ns, data, t_ns)
             ego = ros_log.odometry(t_s, 0.5 * i, -4.0, speed=10.0)

@@ -63,14 +63,14 @@ def main(arguments: list[str]) -> int:
     with tempfile.TemporaryDirectory(prefix="drivelint-same-") as home:
         trees = (commit.unpacked(arguments[0], Path(home)), commit.present())
         differing = 0
-        for name, said in _jobs(Path(home)):
+        for name, words in _jobs(Path(home)):
             if arguments[1:] and name not in arguments[1:]:
                 continue
-            if not Path(said[0]).exists():
-                print(f"{name}: skipped, {said[0]} is not there")
+            if not Path(words[0]).exists():
+                print(f"{name}: skipped, {words[0]} is not there")
                 continue
             codes, results = zip(
-                *(_checked(tree, said, Path(home) / f"out{n}") for n, tree in enumerate(trees)), strict=True
+                *(_check_result(tree, words, Path(home) / f"out{n}") for n, tree in enumerate(trees)), strict=True
             )
             wrong = sorted(
                 file for file in results[0].keys() | results[1].keys() if results[0].get(file) != results[1].get(file)
@@ -85,8 +85,8 @@ def main(arguments: list[str]) -> int:
 
 
 def _jobs(home: Path) -> Iterator[tuple[str, tuple[str | Path, ...]]]:
-    for name, said in JOBS.items():
-        yield name, (*said, "--rules", "all")
+    for name, words in JOBS.items():
+        yield name, (*words, "--rules", "all")
     road = home / "ring.xodr"
     road.write_text(traffic.ring(), encoding="utf-8")
     traffic.write_folder(home / "short" / "s0000", traffic.SHORT, 0)
@@ -94,9 +94,9 @@ def _jobs(home: Path) -> Iterator[tuple[str, tuple[str | Path, ...]]]:
     yield "one rule", (home / "short", "--map", road, "--rules", "ukhc.no-collision")
 
 
-def _checked(tree: Tree, said: tuple[str | Path, ...], out: Path) -> tuple[int, dict[str, bytes]]:
+def _check_result(tree: Tree, words: tuple[str | Path, ...], out: Path) -> tuple[int, dict[str, bytes]]:
     """Return the exit code of one check, and its files that are compared."""
-    command = [tree.python, "-m", "drivelint", "check", *said, *_CHECK, "--out", out, "--overwrite"]
+    command = [tree.python, "-m", "drivelint", "check", *words, *_CHECK, "--out", out, "--overwrite"]
     done = subprocess.run(
         command,
         check=False,

@@ -20,7 +20,7 @@ class Row(NamedTuple):
     """One line: wall-clock seconds unless the unit says otherwise; `cpu` are the CPU seconds of all threads beside it."""
 
     section: str
-    what: str
+    label: str
     value: float
     unit: str = "s"
     cpu: float | None = None
@@ -40,7 +40,7 @@ def markdown(rows: list[Row]) -> str:
         bar = "" if row.bar is None else f"{'>=' if row.bar.at_least else '<='} {row.bar.limit:g} {row.unit}"
         verdict = "" if row.bar is None else "met" if row.bar.met(row.value) else "**missed**"
         lines.append(
-            f"| {row.section} | {row.what} | {_number(row.value)} {row.unit} | {cpu} | {bar} | {verdict} | {row.note} |"
+            f"| {row.section} | {row.label} | {_number(row.value)} {row.unit} | {cpu} | {bar} | {verdict} | {row.note} |"
         )
     return "\n".join(lines)
 

@@ -98,16 +98,16 @@ def test_head_against_the_present_tree(tmp_path: Path) -> None:
     for row in rows:
         by_input.setdefault(row.section.split(", ", 1)[1], []).append(row)
     assert list(by_input)[:2] == ["reference drive", "3 short drives"]
-    assert {tuple(row.what for row in each) for each in by_input.values()} == {(*STAGES, "verdicts")}
+    assert {tuple(row.label for row in each) for each in by_input.values()} == {(*STAGES, "verdicts")}
     assert all(row.value > 0 for row in rows)
     told = [each[-1].note.removeprefix("now ").split("; before ") for each in by_input.values()]
-    assert told[0][0] == _counted(Place(tmp_path, TINY), tmp_path / "own")
+    assert told[0][0] == _counts_of_command(Place(tmp_path, TINY), tmp_path / "own")
     # a rule that is worked on may give other verdicts than that of HEAD
     if not commit._git("status", "--porcelain", "src", "schemas", "queries"):
         assert [now for now, _ in told] == [then for _, then in told]
 
 
-def _counted(place: Place, out: Path) -> str:
+def _counts_of_command(place: Place, out: Path) -> str:
     """Count the verdicts of the reference drive in the table that the command writes."""
     command = ["check", str(place.reference), "--map", str(place.road), "--out", str(out), "--rules", "ukhc"]
     subprocess.run([sys.executable, "-m", "drivelint", *command, "--fail-on", "never"], check=True, capture_output=True)
@@ -138,7 +138,7 @@ def test_a_ratio_is_of_the_medians_of_now_and_before() -> None:
 
     taken = {"now": [timed(1, 9, 0), timed(9, 3, 0), timed(2, 1, 0)], "before": [timed(n, 2, 3) for n in (4, 1, 9)]}
     derive, verdicts = before._compared("old", taken)
-    assert (derive.what, derive.value, derive.unit, derive.cpu) == ("derive", 0.5, "x", 2)
+    assert (derive.label, derive.value, derive.unit, derive.cpu) == ("derive", 0.5, "x", 2)
     assert derive.note == "CPU 4.00 s before; wall 3.00 s, before 2.00 s: 1.50 x"
     assert (verdicts.value, verdicts.note) == (0.5, "now 0 fail, 3 pass; before 3 fail, 3 pass")
 

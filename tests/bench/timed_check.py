@@ -68,7 +68,7 @@ class StageError(Exception):
     """A stage that cannot be measured in these sources."""
 
 
-def owner_of(what: str, names: Names) -> tuple[Any, str]:
+def owner_of(role: str, names: Names) -> tuple[Any, str]:
     """Return the object that has the first of the names that exists, and the attribute's name. Errors: `StageError`."""
     for module, name in names:
         *path, last = name.split(".")
@@ -78,14 +78,14 @@ def owner_of(what: str, names: Names) -> tuple[Any, str]:
             continue
         if callable(getattr(owner, last, None)):
             return owner, last
-    raise StageError(f"no function for {what!r}: none of {', '.join(f'{m}.{n}' for m, n in names)} is there")
+    raise StageError(f"no function for {role!r}: none of {', '.join(f'{m}.{n}' for m, n in names)} is there")
 
 
 def timed_check(job: Job, watched: tuple[tuple[str, Names], ...] = WATCHED) -> Timed:
     """Check drives and write the outputs. Errors: `StageError` if a stage has no function or its function was never called."""
     check, write, options, silent = (
-        getattr(*owner_of(what, names))
-        for what, names in (("check", CHECK), ("write", WRITE), ("options", OPTIONS), ("progress", SILENT))
+        getattr(*owner_of(role, names))
+        for role, names in (("check", CHECK), ("write", WRITE), ("options", OPTIONS), ("progress", SILENT))
     )
     found = [(stage, *owner_of(stage, names)) for stage, names in watched]
     keys = [f"{no} {name}" for no, (_, _, name) in enumerate(found)]

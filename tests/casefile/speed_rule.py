@@ -7,7 +7,7 @@ from pathlib import Path
 from drivelint.casefile import commands as workshop
 from drivelint.catalogue import Rule
 from drivelint.errors import ExitCode
-from tests.evaluate.packs import INVARIANT, MEASURED, write
+from tests.evaluate.packs import INVARIANT, MEASURE, write
 
 LIMIT = '[params.limit]\ndefault = 13\nunit = "m/s"\nwhy = "a test"'
 
@@ -29,7 +29,7 @@ CASES = """
 """
 
 
-class Said(list[str]):
+class Lines(list[str]):
     """What a command printed."""
 
     def __call__(self, line: str) -> None:
@@ -38,7 +38,7 @@ class Said(list[str]):
 
 def said_of(folder: Path, *only: str) -> tuple[ExitCode, str]:
     """Return the exit code of `rules test` over a folder, and what it prints."""
-    said = Said()
+    said = Lines()
     code = workshop.case_test(folder, only, said)
     return code, "\n".join(said)
 
@@ -48,6 +48,6 @@ def with_cases(rule: Rule, cases: str) -> Rule:
     return rule
 
 
-def measured(folder: Path, sql: str = SPEED, header: dict[str, str] | None = None, tables: str = LIMIT) -> Rule:
-    fields = INVARIANT | MEASURED | {"reads": '["ego_state"]'} | (header or {})
+def measured_rule(folder: Path, sql: str = SPEED, header: dict[str, str] | None = None, tables: str = LIMIT) -> Rule:
+    fields = INVARIANT | MEASURE | {"reads": '["ego_state"]'} | (header or {})
     return write(folder, fields, {"condition": sql}, tables=tables)

@@ -9,7 +9,7 @@ import pytest
 from drivelint.casefile import binding_errors
 from drivelint.casefile import commands as workshop
 from drivelint.errors import ExitCode
-from tests.casefile.speed_rule import measured, said_of, with_cases
+from tests.casefile.speed_rule import measured_rule, said_of, with_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -97,7 +97,7 @@ def test_nothing_of_a_refused_section_is_executed(tmp_path: Path, second: str) -
 
 def test_all_errors_of_cases_are_told(tmp_path: Path) -> None:
     rule = with_cases(
-        measured(tmp_path),
+        measured_rule(tmp_path),
         """- name: clean
   given: {ego_state: {t_s: 0..1 by 0.1, sped_mps: 1, indicator: hazards}, pari: {t_s: 0}}
   expect: [{verdict: pass, marign: 1}]

@@ -10,7 +10,7 @@ from drivelint.casefile import Case, is_same_value, judge_case, read_cases
 from drivelint.casefile.scene import complete_scene, refuse_wrong_word
 from drivelint.errors import RuleError
 from drivelint.sql import declarations
-from tests.casefile.speed_rule import measured, said_of, with_cases
+from tests.casefile.speed_rule import measured_rule, said_of, with_cases
 from tests.evaluate.packs import HOLDS, INVARIANT, write
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ CASE = "- name: clean\n  given: {{ego_state: {{t_s: 0..1 by 0.1, {}}}}}\n  expec
 
 
 def test_a_case_is_refused_by_rules_test(tmp_path: Path) -> None:
-    with_cases(measured(tmp_path), CASE.format("indicator: hazards", "pass"))
+    with_cases(measured_rule(tmp_path), CASE.format("indicator: hazards", "pass"))
     code, said = said_of(tmp_path)
     assert code == 2
     assert said.endswith(
@@ -37,7 +37,7 @@ def test_a_case_is_refused_by_rules_test(tmp_path: Path) -> None:
 def test_a_wrong_word_is_found_however_it_is_given(tmp_path: Path, value: str) -> None:
     times = "t_s: [0, 1]" if value.startswith("[") else "t_s: 0..1 by 0.1"
     case = f"- name: clean\n  given: {{ego_state: {{{times}, indicator: {value}}}}}\n  expect: pass\n"
-    rule = with_cases(measured(tmp_path), case)
+    rule = with_cases(measured_rule(tmp_path), case)
     with pytest.raises(RuleError, match=r"ego_state\.indicator: 'hazards' is no indicator; did you mean 'hazard'\?"):
         judge_case(rule, read_cases(rule)[0])
     good = with_cases(rule, case.replace("hazards", "hazard"))
@@ -55,7 +55,7 @@ def test_a_wrong_word_is_found_however_it_is_given(tmp_path: Path, value: str) -
     ],
 )
 def test_what_a_case_expects_is_in_words_of_the_verdict(tmp_path: Path, more: str, message: str) -> None:
-    rule = with_cases(measured(tmp_path), f"- name: clean\n  given: {{ego_state: {{t_s: 0}}}}\n  {more}\n")
+    rule = with_cases(measured_rule(tmp_path), f"- name: clean\n  given: {{ego_state: {{t_s: 0}}}}\n  {more}\n")
     with pytest.raises(RuleError, match=rf"rule\.cases\.yml:1: case 'clean': {message}"):
         read_cases(rule)
 
@@ -72,7 +72,7 @@ def test_a_parameter_of_a_case_is_a_word_of_the_column_that_it_is_compared_with(
 
 
 def test_tables_and_columns_are_named_with_the_nearest(tmp_path: Path) -> None:
-    rule = measured(tmp_path)
+    rule = measured_rule(tmp_path)
     for given, message in (
         ({"ego_stat": {"t_s": 0}}, r"no table 'ego_stat'; did you mean 'ego_state'\?"),
         ({"ego_state": {"t_s": 0, "indicater": "off"}}, r"no column 'indicater'; did you mean 'indicator'\?"),
@@ -92,13 +92,17 @@ def test_every_column_of_words_is_held_against_its_vocabulary(table: str, name: 
     good = column.vocabulary.words[-1]
     wrong = f"{good}{good[-1]}"
 
-    def said(word: str) -> str | dict[str, str]:
+    def value_with(word: str) -> str | dict[str, str]:
         return {column.field: word, "signal_id": "any text"} if column.field else word
 
-    known: tuple[Any, ...] = (said(good), [None, said(good)], {"else": None, "0..1": said(good)})
+    known: tuple[Any, ...] = (value_with(good), [None, value_with(good)], {"else": None, "0..1": value_with(good)})
     for value in known:
         refuse_wrong_word(table, name, value, "given")
-    for value in (said(wrong), [said(good), said(wrong)], {"else": said(good), "0..1": said(wrong)}):
+    for value in (
+        value_with(wrong),
+        [value_with(good), value_with(wrong)],
+        {"else": value_with(good), "0..1": value_with(wrong)},
+    ):
         with pytest.raises(RuleError, match=rf"given\.{name}: '{wrong}' is no .*did you mean '{good}'\?"):
             refuse_wrong_word(table, name, value, "given")
 
@@ -108,16 +112,16 @@ def test_ids_and_texts_are_free(tmp_path: Path) -> None:
         "pair": {"t_s": 0, "object_id": "cyclist"},
         "declared_event": {"t_s": 0, "event": "door_opened", "value": "rear"},
     }
-    scene = complete_scene(measured(tmp_path), given, ())
+    scene = complete_scene(measured_rule(tmp_path), given, ())
     assert scene["pair"][0]["object_id"] == "cyclist"
 
 
 def test_a_value_by_time_may_be_spread_over_its_rows(tmp_path: Path) -> None:
     speeds = {"else": "0..6", "0.2..0.4": "20..30", 0.5: [7]}
-    scene = complete_scene(measured(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": speeds}}, ())
+    scene = complete_scene(measured_rule(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": speeds}}, ())
     assert [row["speed_mps"] for row in scene["ego_state"]] == [0, 1, 20, 25, 30, 7, 6]
     with pytest.raises(RuleError, match=r"ego_state\.speed_mps.*: 0\.5: 2 values for 1 rows"):
-        complete_scene(measured(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": {0.5: [7, 8]}}}, ())
+        complete_scene(measured_rule(tmp_path), {"ego_state": {"t_s": "0..0.6 by 0.1", "speed_mps": {0.5: [7, 8]}}}, ())
 
 
 def test_an_infinite_value_agrees_only_with_the_same_infinite_value() -> None:

@@ -28,7 +28,7 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def said(checkout: Path, *args: str) -> str:
+def output_of(checkout: Path, *args: str) -> str:
     """Return what drivelint prints in this checkout."""
     settings = {**os.environ, "PYTHONPATH": str(checkout / "src"), "DRIVELINT_CACHE_DIR": str(checkout / "cache")}
     command = [sys.executable, "-m", "drivelint", *args]
@@ -38,11 +38,11 @@ def said(checkout: Path, *args: str) -> str:
 @pytest.mark.ci
 def test_the_table_of_the_guide_passes(checkout: Path) -> None:
     assert [Path(path).name for path, _ in FILES] == ["standing.sql", "standing.cases.yml"]
-    assert said(checkout, "rules", "test", "--table", "standing") == "ok   standing: 2 of 2 cases\n"
-    assert "ok   standing: 3 of 3 mutants noticed\n" in said(
+    assert output_of(checkout, "rules", "test", "--table", "standing") == "ok   standing: 2 of 2 cases\n"
+    assert "ok   standing: 3 of 3 mutants noticed\n" in output_of(
         checkout, "rules", "test", "--table", "standing", "--mutate"
     )
-    assert "time since the first step of this stand; NULL: the speed is not known" in said(
+    assert "time since the first step of this stand; NULL: the speed is not known" in output_of(
         checkout, "docs", "dictionary", "standing"
     )
 
@@ -60,7 +60,7 @@ def test_its_cases_notice_every_lost_key(checkout: Path, keys: str) -> None:
         file.write_text(text.replace(keys, fewer), encoding="utf-8")
         try:
             with pytest.raises(subprocess.CalledProcessError) as failed:
-                said(checkout, "rules", "test", "--table", "standing")
+                output_of(checkout, "rules", "test", "--table", "standing")
         finally:
             file.write_text(text, encoding="utf-8")
         assert failed.value.stdout.startswith("FAIL standing: 1 of 2 cases\n"), name

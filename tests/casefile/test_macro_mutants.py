@@ -14,7 +14,7 @@ from drivelint.errors import ExitCode, RuleError
 from drivelint.sql.library import LibraryTable
 from drivelint.sql.macro_trees import macro_texts
 from tests.casefile.speed_rule import CASES as RULE_CASES
-from tests.casefile.speed_rule import SPEED, measured, with_cases
+from tests.casefile.speed_rule import SPEED, measured_rule, with_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,7 +77,7 @@ def test_a_listed_survivor_of_an_unknown_macro_is_told(tmp_path: Path, monkeypat
 def test_a_rule_judges_the_macros_that_it_calls(tmp_path: Path) -> None:
     """The macro is 75 m at 13 m/s: the boundary of the rule is as in the cases."""
     rule = with_cases(
-        measured(tmp_path, SPEED.replace("speed_mps AS", "passing_after_m(speed_mps) - 62 + 0 * speed_mps AS")),
+        measured_rule(tmp_path, SPEED.replace("speed_mps AS", "passing_after_m(speed_mps) - 62 + 0 * speed_mps AS")),
         RULE_CASES,
     )
     mutants = [mutant for mutant in passing_mutants() if mutant.macro == "passing_after_m"]

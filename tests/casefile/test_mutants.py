@@ -13,7 +13,7 @@ from drivelint.casefile.binding_errors import is_valid_sql
 from drivelint.casefile.mutants import mutants
 from drivelint.catalogue import Rule
 from drivelint.errors import WorkerLostError
-from tests.casefile.speed_rule import CASES, SPEED, measured, with_cases
+from tests.casefile.speed_rule import CASES, SPEED, measured_rule, with_cases
 from tests.evaluate.packs import AFTER, HOLDS, INVARIANT, write
 
 LOOSE = CASES.replace("13", "10").replace("12", "9").replace(", margin: 0", "")
@@ -24,7 +24,7 @@ def faults(rule: Rule) -> list[str]:
 
 
 def test_sense_edge_and_threshold(tmp_path: Path) -> None:
-    assert faults(measured(tmp_path)) == [
+    assert faults(measured_rule(tmp_path)) == [
         "sense > -> <=",
         "sense > -> >=",
         "params.limit * 0.9",
@@ -41,12 +41,12 @@ def test_a_condition_that_holds_is_turned_round(tmp_path: Path) -> None:
 
 
 def test_windows_are_halved_and_doubled(tmp_path: Path) -> None:
-    invariant = measured(tmp_path, header={"merge_gap_s": "4.0", "exempt_after_s": '"limit"'})
+    invariant = measured_rule(tmp_path, header={"merge_gap_s": "4.0", "exempt_after_s": '"limit"'})
     assert [f for f in faults(invariant) if "_s" in f or "limit" in f] == [
         *("params.limit * 0.5", "params.limit * 2"),
         *("merge_gap_s * 0.5", "merge_gap_s * 2"),
     ]
-    assert "merge_gap_s * 2" not in faults(measured(tmp_path)), "the header does not set it"
+    assert "merge_gap_s * 2" not in faults(measured_rule(tmp_path)), "the header does not set it"
     condition = "SELECT s.drive_id, s.ego_id, s.t_ns, s.ref_id, true AS holds FROM reference_step s"
     reference = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
     later = write(
@@ -66,7 +66,7 @@ LEFT JOIN step s ON s.drive_id = e.drive_id AND s.t_ns = e.t_ns
 WHERE coalesce(n.clearance_m, 0) > standing_mps() * 1e9
 UNION ALL
 SELECT drive_id, ego_id, t_ns, speed_mps, 0, 'never ' || 7 FROM ego_state WHERE false"""
-    rule = measured(tmp_path, sql, {"reads": '["ego_state", "pair", "step"]'}, tables="")
+    rule = measured_rule(tmp_path, sql, {"reads": '["ego_state", "pair", "step"]'}, tables="")
     assert sorted(faults(rule)[2:]) == sorted(
         [
             "@condition WHERE without: clearance_m < 2.5",
@@ -91,7 +91,7 @@ SELECT drive_id, ego_id, t_ns, speed_mps, 0, 'never ' || 7 FROM ego_state WHERE 
 
 def test_a_mutant_is_its_fault_and_nothing_else(tmp_path: Path) -> None:
     sql = SPEED.replace("$limit", "2.5") + " WHERE speed_mps > 1 AND lanelet_id IS NOT NULL"
-    rule = measured(tmp_path, sql, tables="")
+    rule = measured_rule(tmp_path, sql, tables="")
     by_fault = {mutant.fault: mutant.rule.sections["condition"] for mutant in mutants(rule)}
     start = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, "
     assert by_fault["@condition WHERE without: speed_mps > 1"] == (
@@ -104,7 +104,7 @@ def test_a_mutant_is_its_fault_and_nothing_else(tmp_path: Path) -> None:
 
 
 def test_a_fault_that_stands_twice_has_two_names(tmp_path: Path) -> None:
-    twice = measured(tmp_path, f"{SPEED} WHERE t_ns > 5 UNION ALL {SPEED} WHERE t_ns > 5")
+    twice = measured_rule(tmp_path, f"{SPEED} WHERE t_ns > 5 UNION ALL {SPEED} WHERE t_ns > 5")
     assert [f for f in faults(twice) if "without" in f] == [
         "@condition WHERE without: t_ns > 5",
         "@condition WHERE without: t_ns > 5 #2",
@@ -112,14 +112,14 @@ def test_a_fault_that_stands_twice_has_two_names(tmp_path: Path) -> None:
 
 
 def test_good_cases_notice_every_mutant(tmp_path: Path) -> None:
-    proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES))
+    proof = mutation.judge_mutants(with_cases(measured_rule(tmp_path), CASES))
     assert proof == mutation.MutationResult("pack.rule", True, 4, (), ())
     assert (proof.ok, proof.n_noticed) == (True, 4)
 
 
 @pytest.mark.ci
 def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> None:
-    rule = with_cases(measured(tmp_path), LOOSE)
+    rule = with_cases(measured_rule(tmp_path), LOOSE)
     proof = mutation.judge_mutants(rule)
     assert proof.survivors == ("sense > -> >=", "params.limit * 0.9")
     assert not proof.ok
@@ -134,7 +134,7 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
 
 @pytest.mark.slow
 def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
-    rule = with_cases(measured(tmp_path), LOOSE)
+    rule = with_cases(measured_rule(tmp_path), LOOSE)
     entry = '[[survivor]]\nrule = "pack.rule"\nmutant = "{}"\nreason = "a test"\n'
     listed = [entry.format("sense > -> >="), entry.format("params.limit * 0.9")]
     file = rule.path.parent / mutation.SURVIVORS_FILE
@@ -156,7 +156,7 @@ def test_a_mutant_that_is_no_valid_sql_is_not_counted(tmp_path: Path) -> None:
     """Without a key in USING its column is ambiguous, which DuckDB refuses: no case has noticed anything."""
     sql = """
 SELECT drive_id, ego_id, t_ns, e.speed_mps AS observed, $limit AS required FROM ego_state e JOIN clock USING (drive_id, ego_id)"""
-    rule = with_cases(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
+    rule = with_cases(measured_rule(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
     assert [fault for fault in faults(rule) if "USING" in fault] == [
         "@condition USING without: drive_id",
         "@condition USING without: ego_id",
@@ -169,7 +169,7 @@ def test_sql_that_duckdb_cannot_plan_is_not_valid(tmp_path: Path) -> None:
     sql = """
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, f.factor * $limit AS required
 FROM ego_state e, (SELECT 1.0 AS factor) f LEFT JOIN clock c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id"""
-    assert not is_valid_sql(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}))
+    assert not is_valid_sql(measured_rule(tmp_path, sql, {"reads": '["clock", "ego_state"]'}))
 
 
 def test_a_join_after_a_cross_join_has_mutants_with_the_same_meaning(tmp_path: Path) -> None:
@@ -177,7 +177,7 @@ def test_a_join_after_a_cross_join_has_mutants_with_the_same_meaning(tmp_path: P
     sql = """
 SELECT e.drive_id, e.ego_id, e.t_ns, e.speed_mps AS observed, f.factor * $limit AS required
 FROM ego_state e CROSS JOIN (SELECT 1.0 AS factor) f JOIN clock c ON c.drive_id = e.drive_id AND c.ego_id = e.ego_id"""
-    rule = with_cases(measured(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
+    rule = with_cases(measured_rule(tmp_path, sql, {"reads": '["clock", "ego_state"]'}), CASES)
     proof = mutation.judge_mutants(rule)
     assert all(is_valid_sql(mutant.rule) for mutant in mutants(rule))
     # its cases of one drive and one ego each are judged beside each other, so that a key that is left out is noticed
@@ -185,7 +185,9 @@ FROM ego_state e CROSS JOIN (SELECT 1.0 AS factor) f JOIN clock c ON c.drive_id 
 
 
 def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None:
-    proof = mutation.judge_mutants(with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass")))
+    proof = mutation.judge_mutants(
+        with_cases(measured_rule(tmp_path), CASES.replace("expect: unknown", "expect: pass"))
+    )
     assert (proof.ok, proof.n_noticed, proof.n) == (False, 0, 4)
     assert "case 'unknown': expected pass, got unknown" in proof.problem
 
@@ -206,14 +208,14 @@ def test_a_process_that_dies_is_an_error_and_not_waited_for() -> None:
 
 @pytest.mark.slow
 @pytest.mark.sample(1)
-@pytest.mark.parametrize(("key", "other"), [("drive_id", "ego_id"), ("ego_id", "drive_id")])
-def test_a_join_without_a_key_is_noticed_by_cases_of_one_drive_each(tmp_path: Path, key: str, other: str) -> None:
+@pytest.mark.parametrize(("key", "other_key"), [("drive_id", "ego_id"), ("ego_id", "drive_id")])
+def test_a_join_without_a_key_is_noticed_by_cases_of_one_drive_each(tmp_path: Path, key: str, other_key: str) -> None:
     """Both cases are fine only_waivers: only beside each other does the lost key show."""
     sql = f"""
 SELECT e.drive_id, e.ego_id, e.t_ns, 20 AS observed, CASE WHEN l.t_to_ns IS NULL THEN e.speed_mps END AS required
 FROM ego_state e
-LEFT JOIN lost_object l ON l.{other} = e.{other}"""
-    rule = measured(tmp_path, sql, {"reads": '["ego_state", "lost_object"]'}, tables="")
+LEFT JOIN lost_object l ON l.{other_key} = e.{other_key}"""
+    rule = measured_rule(tmp_path, sql, {"reads": '["ego_state", "lost_object"]'}, tables="")
     with_cases(
         rule,
         """

@@ -152,12 +152,12 @@ def test_a_table_that_fails_its_cases_has_a_problem(tmp_path: Path) -> None:
     assert not found.ok
 
 
-@pytest.mark.parametrize("printed", ["SELECT FROM", "FROM ego_mode"])
+@pytest.mark.parametrize("printed_sql", ["SELECT FROM", "FROM ego_mode"])
 def test_a_select_that_is_printed_with_another_meaning_has_a_problem(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, printed: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, printed_sql: str
 ) -> None:
     """DuckDB prints a comma for CROSS JOIN: all mutants of such a SELECT were invalid, and counted as none."""
-    monkeypatch.setattr(table_mutation, "printed_select", lambda _: printed)
+    monkeypatch.setattr(table_mutation, "printed_select", lambda _: printed_sql)
     found = table_mutation.judge_table_mutants(table(tmp_path))
     assert "printed by DuckDB, the SELECT has another meaning" in found.problem
     assert not found.ok

@@ -11,8 +11,8 @@ from drivelint.casefile import commands as workshop
 from drivelint.casefile import mutation
 from drivelint.catalogue import Rule, read_rule
 from drivelint.errors import ExitCode, RuleError, UsageError
-from tests.casefile.speed_rule import CASES, SPEED, Said, measured, said_of, with_cases
-from tests.evaluate.packs import INVARIANT, MEASURED, text
+from tests.casefile.speed_rule import CASES, SPEED, Lines, measured_rule, said_of, with_cases
+from tests.evaluate.packs import INVARIANT, MEASURE, text
 
 KINDS = ("invariant", "execution", "precondition", "postcondition")
 
@@ -25,7 +25,7 @@ def test_a_new_rule_runs_as_it_is_and_its_cases_notice_every_mutant(tmp_path: Pa
     rule = read_rule(sql)
     assert (rule.id, rule.kind, rule.status) == (f"mine.r1.{kind}", kind, "draft")
     assert said_of(tmp_path)[0] is ExitCode.OK
-    said = Said()
+    said = Lines()
     assert workshop.mutation_test(tmp_path, (), said) is ExitCode.OK
     assert "no case notices" not in "\n".join(said)
 
@@ -37,7 +37,7 @@ def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, mon
     monkeypatch.setattr(mutation, "judge_all_mutants", lambda *_: iter(()))
     for file in (sql, cases):
         assert said_of(file) == (ExitCode.OK, "ok   mine.one: 10 of 10 checks")
-    said = Said()
+    said = Lines()
     (sql.parent / "survivors.toml").write_text('[[survivor]]\nrule = "mine.two"\nmutant = "x"\nreason = "y"\n', "utf-8")
     assert workshop.mutation_test(sql, (), said) is ExitCode.OK, "an entry of another rule is none of its business"
     other = tmp_path / "mine" / "notes.txt"
@@ -93,15 +93,15 @@ def test_a_copy_of_the_shipped_rules_can_be_worked_on(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
-    with_cases(measured(tmp_path), CASES)
+    with_cases(measured_rule(tmp_path), CASES)
     broken = tmp_path / "pack" / "broken.sql"
-    broken.write_text(text(INVARIANT | MEASURED | {"senze": "1"}, {"condition": SPEED}), encoding="utf-8")
+    broken.write_text(text(INVARIANT | MEASURE | {"senze": "1"}, {"condition": SPEED}), encoding="utf-8")
     code, said = said_of(tmp_path)
     assert code is ExitCode.USAGE
     assert f"REFUSED {broken}:" in said
     assert f"\n{broken}:4: unknown key 'senze'" in said
     assert "pack.rule: 6 of 7 checks" in said, "no case is not applicable"
-    assert workshop.mutation_test(tmp_path, (), Said()) is ExitCode.USAGE
+    assert workshop.mutation_test(tmp_path, (), Lines()) is ExitCode.USAGE
     assert said_of(tmp_path, "pack.rule")[0] is ExitCode.FAILED
     with pytest.raises(UsageError, match="none of the 2 rules here"):
         said_of(tmp_path, "nobody.*")
@@ -120,7 +120,7 @@ def test_one_rule_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
 def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str, message: str) -> None:
     reads = '["ego_state", "pair"]' if "pair" in source else '["ego_state"]'
     sql = f"SELECT e.drive_id, e.ego_id, {'t_ns' if message[0] == 'A' else 'e.t_ns'}, 1 AS observed, 2 AS required\nFROM {source}"
-    rule = with_cases(measured(tmp_path, sql, {"reads": reads}, tables=""), CASES)
+    rule = with_cases(measured_rule(tmp_path, sql, {"reads": reads}, tables=""), CASES)
     code, said = said_of(tmp_path)
     assert code is ExitCode.USAGE
     assert said.startswith(f"REFUSED {rule.path}:")
@@ -129,7 +129,7 @@ def test_a_plan_or_sql_that_does_not_fit_is_refused(tmp_path: Path, source: str,
 
 def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp_path: Path) -> None:
     sql = "SELECT drive_id, ego_id, t_ns,\n  spead_mps AS observed,\n  $limit AS required\nFROM ego_state"
-    rule = with_cases(measured(tmp_path, sql), CASES)
+    rule = with_cases(measured_rule(tmp_path, sql), CASES)
     line = rule.path.read_text(encoding="utf-8").split("\n").index("  spead_mps AS observed,") + 1
     code, said = said_of(tmp_path)
     assert code is ExitCode.USAGE
@@ -140,7 +140,7 @@ def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp
 @pytest.mark.slow
 def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workshop, "_CHANGED_FILES_CHECK_PERIOD_S", 0.01)
-    rule = with_cases(measured(tmp_path), CASES)
+    rule = with_cases(measured_rule(tmp_path), CASES)
     workshop.write_new_rule("mine.other", tmp_path, "invariant")
     over = Event()
     edits = iter(
@@ -150,7 +150,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
             over.set,
         ]
     )
-    said = Said()
+    said = Lines()
 
     def say(line: str) -> None:
         said(line)
@@ -190,7 +190,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
 def test_what_is_wrong_in_cases_is_said_with_its_line(
     tmp_path: Path, cases: str | None, line: int, message: str
 ) -> None:
-    rule = measured(tmp_path)
+    rule = measured_rule(tmp_path)
     if cases is not None:
         with_cases(rule, cases)
     code, said = said_of(tmp_path)
@@ -211,7 +211,7 @@ def test_what_is_wrong_in_cases_is_said_with_its_line(
     ],
 )
 def test_a_case_that_fails_is_said_with_its_line(tmp_path: Path, cases: str, line: int, message: str) -> None:
-    rule = with_cases(measured(tmp_path), cases)
+    rule = with_cases(measured_rule(tmp_path), cases)
     code, said = said_of(tmp_path)
     assert code is ExitCode.FAILED
     assert f"{rule.path.with_suffix('.cases.yml')}:{line}: {message}" in said
@@ -221,10 +221,10 @@ def test_a_case_that_fails_is_said_with_its_line(tmp_path: Path, cases: str, lin
 def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_applies(tmp_path: Path) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, object_id, speed_mps AS observed, $limit AS required FROM lead"
     case = "\n- name: clean\n  given: {lead: {t_s: 0..1 by 0.1, object_id: f, speed_mps: 14}}\n  expect: pass\n"
-    with_cases(measured(tmp_path, sql, {"reads": '["lead"]'}), case)
+    with_cases(measured_rule(tmp_path, sql, {"reads": '["lead"]'}), case)
     hint = "without @applies, an invariant about objects is judged for the actors of pair, and this case has none"
     assert hint in said_of(tmp_path)[1]
-    with_cases(measured(tmp_path), CASES.replace("expect: unknown", "expect: pass"))
+    with_cases(measured_rule(tmp_path), CASES.replace("expect: unknown", "expect: pass"))
     assert "actors of pair" not in said_of(tmp_path)[1]
 
 
@@ -253,7 +253,7 @@ def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_app
 def test_what_is_wrong_in_a_rule_is_said_with_its_line(
     tmp_path: Path, change: tuple[str, str], line: int, message: str
 ) -> None:
-    rule: Rule = measured(tmp_path)
+    rule: Rule = measured_rule(tmp_path)
     good = rule.path.read_text(encoding="utf-8")
     assert change[0] in good
     rule.path.write_text(good.replace(*change), encoding="utf-8")

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 KEY = "drive_id"
 
 
-class Judged(NamedTuple):
+class CasesTogether(NamedTuple):
     """The first case of a rule that came out otherwise than it expects, with the difference, and all reason codes of the rule."""
 
     problem: str
@@ -52,7 +52,7 @@ class _Group(NamedTuple):
         )
 
 
-def judged_together(rules: Sequence[Rule]) -> dict[str, Judged]:
+def judged_together(rules: Sequence[Rule]) -> dict[str, CasesTogether]:
     """Judge all cases of these rules by all of them, as drives of as few databases as can be; return rule id -> its own cases' outcome.
 
     Errors: `RuleError` for a case that cannot be understood.
@@ -66,11 +66,13 @@ def judged_together(rules: Sequence[Rule]) -> dict[str, Judged]:
             found = _Group(rule, cases, group)
             scenes[turn, found.what_all_share].append(found)
         n_cases += len(cases)
-    told = {rule.id: Judged("", set()) for rule in rules}
+    told = {rule.id: CasesTogether("", set()) for rule in rules}
     for groups in scenes.values():
         for asked, outcome in zip(groups, _outcomes(groups), strict=True):
             before = told[asked.rule.id]
-            told[asked.rule.id] = Judged(before.problem or _problem(asked, outcome), before.codes | _codes(outcome))
+            told[asked.rule.id] = CasesTogether(
+                before.problem or _problem(asked, outcome), before.codes | _codes(outcome)
+            )
     return told
 
 

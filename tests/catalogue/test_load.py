@@ -13,12 +13,12 @@ from drivelint.catalogue.header import line_of_key
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.resources import folder
-from tests.evaluate.packs import BEFORE, EXECUTION, HEADER, HOLDS, INVARIANT, MEASURED, PLACE_BEFORE, text, write
+from tests.evaluate.packs import BEFORE, EXECUTION, HEADER, HOLDS, INVARIANT, MEASURE, PLACE_BEFORE, text, write
 
 SPEED = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 1 AS required FROM ego_state"
-GOOD = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
+GOOD = INVARIANT | MEASURE | {"reads": '["ego_state"]'}
 REFERENCE = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
-BOTH = {"reads": '["ego_state", "exit_taken"]'}
+READS_BOTH = {"reads": '["ego_state", "exit_taken"]'}
 PARAM = '[params.limit]\ndefault = 13\nunit = "m/s"\nwhy = "a test"'
 
 
@@ -264,7 +264,7 @@ def test_what_is_refused_at_reference_points(
     tmp_path: Path, header: dict[str, str], sections: dict[str, str], message: str
 ) -> None:
     with pytest.raises(RuleError, match=message):
-        write(tmp_path, MEASURED | BOTH | header, {"condition": SPEED} | sections)
+        write(tmp_path, MEASURE | READS_BOTH | header, {"condition": SPEED} | sections)
 
 
 def test_sql_before_the_first_section_and_a_missing_condition(tmp_path: Path) -> None:
@@ -291,7 +291,7 @@ def test_packs_of_users_stand_beside_the_shipped_ones(tmp_path: Path) -> None:
 def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) -> None:
     ctes = "WITH fast AS (SELECT * FROM ego_state), n AS (SELECT unnest([1, 2]) AS i)"
     sql = f"{ctes} {SPEED.replace('ego_state', 'fast')} UNION ALL {SPEED}"
-    rule = write(tmp_path, HOLDS | GOOD | MEASURED, {"condition": sql})
+    rule = write(tmp_path, HOLDS | GOOD | MEASURE, {"condition": sql})
     assert rule.columns["condition"] == ("drive_id", "ego_id", "t_ns", "observed", "required")
 
 

@@ -16,9 +16,9 @@ from drivelint.catalogue.check import check_query
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import RuleError
 from drivelint.sql import store
-from tests.evaluate.packs import INVARIANT, MEASURED, write
+from tests.evaluate.packs import INVARIANT, MEASURE, write
 
-HEADER = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
+HEADER = INVARIANT | MEASURE | {"reads": '["ego_state"]'}
 GOOD = "SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 1 AS required\nFROM ego_state"
 FIRST = 14
 """The line of a rule's file on which its SQL begins: ten of header, one blank, one of the section's mark."""

@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.catalogue import Rule, parse_params, required_rules, select_rules
 from drivelint.errors import UsageError
-from tests.evaluate.packs import INVARIANT, MEASURED, write
+from tests.evaluate.packs import INVARIANT, MEASURE, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +24,7 @@ PARAMS = "".join(
 
 @pytest.fixture
 def rules(tmp_path: Path) -> dict[str, Rule]:
-    head = INVARIANT | MEASURED | {"reads": '["ego_state"]'}
+    head = INVARIANT | MEASURE | {"reads": '["ego_state"]'}
     made = [
         write(tmp_path, head | {"status": f'"{status}"'} | more, {"condition": SQL}, name=name, tables=PARAMS)
         for name, status, more in (

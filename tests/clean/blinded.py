@@ -8,7 +8,7 @@ import pyarrow.compute as pc
 
 from drivelint.engine.batch import Drive
 from tests import blinding
-from tests.clean.planted import PLANTED, Planted, judged
+from tests.clean.planted import PLANTED, Planted, planted_verdicts
 from tests.clean.story import GARAGE_Y
 
 if TYPE_CHECKING:
@@ -23,15 +23,19 @@ STORIES = [p for p in PLANTED if not p.scene and p.rule not in LONG]
 
 def on_the_road(drive: Drive) -> Drive:
     """Return the drive without those who wait elsewhere for their chapter: far away they have a place, here they are to have none."""
-    there = blinding.changed(
+    there = blinding.change_table(
         drive, "actor_state", lambda states: states.filter(pc.greater(states["y_m"], GARAGE_Y / 2))
     )
     left = pc.unique(there.trace.tables["actor_state"]["actor_id"])
-    return blinding.changed(there, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
+    return blinding.change_table(there, "actor", lambda actors: actors.filter(pc.is_in(actors["actor_id"], left)))
 
 
-def found(planted: Planted) -> tuple[Row, Span]:
+def breach(planted: Planted) -> tuple[Row, Span]:
     """Return the (first) row that breaks the rule, and from when to when."""
-    row = next(r for r in judged(planted.pack)[planted.rule] if r["rule_id"] == planted.rule and r["verdict"] == "fail")
+    row = next(
+        r
+        for r in planted_verdicts(planted.pack)[planted.rule]
+        if r["rule_id"] == planted.rule and r["verdict"] == "fail"
+    )
     times = [row[t] / 1e9 for t in ("t_start_ns", "t_end_ns", "t_ref_ns") if row[t] is not None]
     return row, (min(times), max(times))

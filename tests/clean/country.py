@@ -35,7 +35,7 @@ def follow(
     rounding_s: float = 0.0,
     parks: bool = False,
     alone: bool = False,
-    chosen: str = "",
+    chosen_speed: str = "",
 ) -> None:
     """Behind another car on a country road."""
     s = w.route.road(700.0, replace(COUNTRY[w.nation], centre=centre))
@@ -70,8 +70,8 @@ def follow(
             w.events.append((w.when(s + 500.0), "headlights", "on"))
         if hazards:
             w.hazards.append((w.when(s + 300.0), w.when(s + 400.0)))
-        if chosen:
-            w.events.append((w.when(s + 200.0), "chosen_speed", chosen))
+        if chosen_speed:
+            w.events.append((w.when(s + 200.0), "chosen_speed", chosen_speed))
 
     w.then(scene)
 

@@ -11,7 +11,7 @@ from drivelint import catalogue
 from tests.clean.chapters import CHAPTERS
 from tests.clean.roads import open_road
 from tests.clean.story import Story
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -28,7 +28,7 @@ def stable(packs: Iterable[str]) -> tuple[str, ...]:
     return tuple(r.id for r in catalogue.load_rules().values() if r.status == "stable" and r.pack in packs)
 
 
-def told(name: str, nation: str, chapters: Iterable[str], change: Mapping[str, Any] | None = None) -> Drive:
+def story_drive(name: str, nation: str, chapters: Iterable[str], change: Mapping[str, Any] | None = None) -> Drive:
     """Return a story of these chapters, the same change made to each, with open road before, between and after."""
     story = Story(nation)
     open_road(story)
@@ -38,7 +38,7 @@ def told(name: str, nation: str, chapters: Iterable[str], change: Mapping[str, A
     return story.drive(name)
 
 
-def named(drive: Drive, name: str) -> Drive:
+def renamed_drive(drive: Drive, name: str) -> Drive:
     """Return the drive under another name."""
     tables = {}
     for table, rows in drive.trace.tables.items():
@@ -51,7 +51,7 @@ def verdicts(drives: Iterable[Drive], packs: Iterable[str]) -> dict[str, list[Ro
     """Judge all drives in one batch; return rows by drive."""
     drives = list(drives)
     found: dict[str, list[Row]] = {drive.trace.drive_id: [] for drive in drives}
-    for row in judged(drives, rules=stable(packs)):
+    for row in verdict_rows(drives, rules=stable(packs)):
         found[row["drive_id"]].append(row)
     return found
 

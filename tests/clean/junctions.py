@@ -33,7 +33,7 @@ def stop_sign(w: Story, *, halts: bool = True, wide: float = 0.0, short: float =
 
 
 def offside_turn(
-    w: Story, *, oncoming_s: float = 6.0, walker_s: float = 8.0, cut: float = 0.0, fast: float = 4.0
+    w: Story, *, oncoming_s: float = 6.0, walker_s: float = 8.0, cut_m: float = 0.0, fast: float = 4.0
 ) -> None:
     """Across the oncoming traffic into a side road, after somebody has come and before somebody else comes."""
     s = w.route.road(250.0, TOWN[w.nation])
@@ -42,9 +42,9 @@ def offside_turn(
     j = w.route.junction(turn, (turn, "straight"), TOWN[w.nation])
     w.slow(j.s_in - 6.0, j.s_out + 12.0 - j.s_in, fast)
     w.indicates("offside", j.s_in - 80.0, j.s_out + 4.0)
-    if cut:
-        w.plan.shift(-cut, j.s_in - 4.0, 12.0)
-        w.plan.shift(cut, j.s_out + 6.0, 20.0)
+    if cut_m:
+        w.plan.shift(-cut_m, j.s_in - 4.0, 12.0)
+        w.plan.shift(cut_m, j.s_out + 6.0, 20.0)
     after = w.route.road(200.0, TOWN[w.nation])
     w.slow(after + 6.0, 194.0, 12.0)
 

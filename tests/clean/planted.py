@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from tests.clean.judging import named, told, verdicts
+from tests.clean.judging import renamed_drive, story_drive, verdicts
 from tests.demo import scene_drive
 from tests.demo.scenes import all_scenes
 
@@ -49,13 +49,13 @@ class Planted(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
                 self.clean: partial(_demo, self.unchanged, self.clean),
             }
         return {
-            self.rule: partial(told, self.rule, self.nation, [self.chapter], self.change),
-            self.clean: partial(told, self.clean, self.nation, [self.chapter]),
+            self.rule: partial(story_drive, self.rule, self.nation, [self.chapter], self.change),
+            self.clean: partial(story_drive, self.clean, self.nation, [self.chapter]),
         }
 
 
 def _demo(scene: str, name: str) -> Drive:
-    return named(scene_drive.drive_of_scene(next(s for s in all_scenes() if s.name == scene)), name)
+    return renamed_drive(scene_drive.drive_of_scene(next(s for s in all_scenes() if s.name == scene)), name)
 
 
 PLANTED = msgspec.convert(
@@ -64,7 +64,7 @@ PLANTED = msgspec.convert(
 
 
 @cache
-def judged(pack: str) -> dict[str, list[Row]]:
+def planted_verdicts(pack: str) -> dict[str, list[Row]]:
     """Return the verdicts of a pack on its planted drives (by rule), and on the same ones without (by their names)."""
     drives: dict[str, Callable[[], Drive]] = {}
     for planted in PLANTED:

@@ -34,8 +34,8 @@ def steady(t: Floats, at: float, v: float, t0: float) -> Floats:
     return at + v * (t - t0)
 
 
-def moving_off(t: Floats, at: float, gone: float, v: float = 12.0) -> Floats:
+def moving_off(t: Floats, at: float, t_off: float, v: float = 12.0) -> Floats:
     """Return the stations of one who stands at a station and drives off at a time, with 2 m/s2."""
-    rolling = np.clip(t - gone, 0.0, v / 2.0)
-    found: Floats = at + rolling**2 + v * np.clip(t - gone - v / 2.0, 0.0, None)
+    rolling = np.clip(t - t_off, 0.0, v / 2.0)
+    found: Floats = at + rolling**2 + v * np.clip(t - t_off - v / 2.0, 0.0, None)
     return found

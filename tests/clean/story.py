@@ -148,7 +148,7 @@ def _garaged(actor: Actor, on: NDArray[np.bool_], place: int) -> Actor:
     )
 
 
-def _with(made: Drive, name: str, story: Story) -> Drive:
+def _with(drive: Drive, name: str, story: Story) -> Drive:
     """Return the drive with what else the log says: lights' states, declared events, conditions."""
     rows: dict[str, list[dict[str, Any]]] = {
         "signal_state": [
@@ -164,7 +164,7 @@ def _with(made: Drive, name: str, story: Story) -> Drive:
             for condition, value in sorted(story.conditions.items())
         ],
     }
-    tables = made.trace.tables | {
-        table: pa.Table.from_pylist(content, schema=made.trace.tables[table].schema) for table, content in rows.items()
+    tables = drive.trace.tables | {
+        table: pa.Table.from_pylist(content, schema=drive.trace.tables[table].schema) for table, content in rows.items()
     }
-    return replace(made, trace=replace(made.trace, tables=tables))
+    return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -10,10 +10,10 @@ import pytest
 from drivelint.engine.batch import Drive
 from tests import blinding
 from tests.blinding import EVER
-from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, found, on_the_road
+from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, breach, on_the_road
 from tests.clean.judging import stable
 from tests.clean.planted import Planted
-from tests.scenes import judged as judged_by
+from tests.scenes import verdict_rows as judged_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,7 +73,7 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
     everybody = drive.trace.tables["actor"]["actor_id"].to_pylist()
     others = [row["object_id"]] if row["object_id"] else [a for a in everybody if a != "ego"]
 
-    def each(make: Any, *more: Any) -> Drive:
+    def change_others(make: Any, *more: Any) -> Drive:
         less = drive
         for other in others:
             less = make(less, other, *more)
@@ -93,27 +93,27 @@ def blinded(drive: Drive, row: Row, span: Span) -> Iterator[tuple[str, Drive]]:
     yield "ego's nose for a second", blinding.turned(drive, "ego", (span[0] - 0.5, span[0] + 0.5))
     yield "indicator", blinding.without(drive, "actor_state", ("indicator",), "ego", (span[0] - 7, span[1] + 7))
     if others:
-        yield "place of the others", each(blinding.nulled, long)
-        yield "place of the others for ever", each(blinding.nulled, EVER)
-        yield "a second of the others", each(blinding.dropped, (span[0] - 0.5, span[0] + 0.5))
-        yield "id of the others", each(blinding.renamed_actor, span[0] - 0.05)
+        yield "place of the others", change_others(blinding.nulled, long)
+        yield "place of the others for ever", change_others(blinding.nulled, EVER)
+        yield "a second of the others", change_others(blinding.dropped, (span[0] - 0.5, span[0] + 0.5))
+        yield "id of the others", change_others(blinding.renamed_actor, span[0] - 0.05)
         yield "heading of the others", lacking("actor_state", ("yaw_rad",))
         yield "speed of the others", lacking("actor_state", SPEED)
         yield "size of the others", lacking("actor", SIZE)
         yield "class of the others", lacking("actor", ("actor_class",))
-        yield "nose of the others", each(blinding.turned, EVER)
-        yield "nose of the others for a second", each(blinding.turned, (span[0] - 0.5, span[0] + 0.5))
-        yield "others that freeze", each(blinding.frozen, long)
-        yield "others that jump", each(blinding.jumped, long)
-        yield "others that jump for ever", each(blinding.jumped, (span[0] - 0.35, 1e6))
-        rest = each(blinding.dropped, (span[0] - 0.35, 1e6))
+        yield "nose of the others", change_others(blinding.turned, EVER)
+        yield "nose of the others for a second", change_others(blinding.turned, (span[0] - 0.5, span[0] + 0.5))
+        yield "others that freeze", change_others(blinding.frozen, long)
+        yield "others that jump", change_others(blinding.jumped, long)
+        yield "others that jump for ever", change_others(blinding.jumped, (span[0] - 0.35, 1e6))
+        rest = change_others(blinding.dropped, (span[0] - 0.35, 1e6))
         if rest.trace.tables["actor"].num_rows == len(everybody):
             yield "end of the others", rest
     if drive.trace.tables["signal_state"].num_rows:
         yield "lights", blinding.without(drive, "signal_state", ("state",), None, long)
-        yield "all lights", blinding.changed(drive, "signal_state", blinding.empty)
-    yield "events", blinding.changed(drive, "declared_event", blinding.empty)
-    yield "conditions", blinding.changed(drive, "drive_condition", blinding.empty)
+        yield "all lights", blinding.change_table(drive, "signal_state", blinding.empty)
+    yield "events", blinding.change_table(drive, "declared_event", blinding.empty)
+    yield "conditions", blinding.change_table(drive, "drive_condition", blinding.empty)
     yield "map", blinding.on(drive, None)
     road = drive.environment
     assert road is not None
@@ -129,13 +129,13 @@ def is_about(row: Row, span: Span) -> bool:
 
 
 @cache
-def said(pack: str, chapter: str) -> dict[str, set[str]]:
+def chapter_verdicts(pack: str, chapter: str) -> dict[str, set[str]]:
     """Return the verdicts on what is planted in a chapter by a pack's rules, by rule and what was taken away."""
     drives: list[Drive] = []
     spans: dict[str, Span] = {}
     mine = [p for p in STORIES if (p.pack, p.chapter) == (pack, chapter)]
     for planted in mine:
-        row, span = found(planted)
+        row, span = breach(planted)
         spans[planted.rule] = span
         whole = on_the_road(planted.drives()[planted.rule]())
         part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
@@ -150,7 +150,7 @@ def said(pack: str, chapter: str) -> dict[str, set[str]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("planted", STORIES, ids=lambda p: p.rule)
 def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
-    every = said(planted.pack, planted.chapter)
+    every = chapter_verdicts(planted.pack, planted.chapter)
     mine = {name.partition("/")[2]: v for name, v in every.items() if name.startswith(f"{planted.rule}/")}
     assert "fail" in mine["nothing"]
     clear = {what for what, verdicts in mine.items() if not verdicts & {"fail", "unknown"}}
@@ -162,7 +162,7 @@ def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
 def test_what_is_kept_is_never_broken_by_not_being_seen(rule: str) -> None:
     """The same drives without what was planted, by every stable rule of these packs."""
     planted = next(p for p in STORIES if p.rule == rule)
-    row, span = found(planted)
+    row, span = breach(planted)
     whole = on_the_road(planted.drives()[planted.clean]())
     part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
     less = blinded(part, row | {"object_id": None}, span)

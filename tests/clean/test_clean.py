@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.clean.judging import EVERYWHERE, PACKS, broken, stable, told, verdicts
+from tests.clean.judging import EVERYWHERE, PACKS, broken, stable, story_drive, verdicts
 
 if TYPE_CHECKING:
     from tests.scenes import Row
@@ -43,7 +43,7 @@ NOT_KEPT = {
 @cache
 def of(nation: str) -> list[Row]:
     """Return the verdicts of a nation's drive by all of its packs."""
-    drive = told(f"clean-{nation}", nation, CHAPTERS[nation])
+    drive = story_drive(f"clean-{nation}", nation, CHAPTERS[nation])
     log = drive.trace.tables["data_log"].to_pylist()[0]
     assert log["t_end_ns"] - log["t_start_ns"] >= 600 * 10**9
     return verdicts([drive], PACKS[nation])[drive.trace.drive_id]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tests import blinding, cropping
-from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, found, on_the_road
-from tests.scenes import judged
+from tests.clean.blinded import AFTER_S, BEFORE_S, STORIES, breach, on_the_road
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,17 +47,17 @@ def cropped(drive: Drive, span: Span) -> Iterator[tuple[str, Drive]]:
 
 
 @cache
-def said(pack: str, chapter: str) -> dict[str, dict[str, set[str]]]:
+def chapter_verdicts(pack: str, chapter: str) -> dict[str, dict[str, set[str]]]:
     """Return the verdicts on what is planted in a chapter, by rule and how the map was cut."""
     drives: list[Drive] = []
     mine = [p for p in STORIES if (p.pack, p.chapter) == (pack, chapter)]
     for planted in mine:
-        _, span = found(planted)
+        _, span = breach(planted)
         whole = on_the_road(planted.drives()[planted.rule]())
         part = blinding.cut(whole, (span[0] - BEFORE_S, span[1] + AFTER_S))
         drives += [blinding.renamed(one, f"{planted.rule}/{what}") for what, one in cropped(part, span)]
     verdicts: dict[str, dict[str, set[str]]] = {p.rule: {} for p in mine}
-    for row in judged(drives, rules=list(verdicts)):
+    for row in verdict_rows(drives, rules=list(verdicts)):
         rule, _, what = row["drive_id"].partition("/")
         if row["rule_id"] == rule:
             verdicts[rule].setdefault(what, set()).add(row["verdict"])
@@ -71,7 +71,7 @@ EVIDENCE: dict[tuple[str, str], str] = {}
 @pytest.mark.slow
 @pytest.mark.parametrize("planted", [p for p in STORIES if p.pack in PACKS], ids=lambda p: p.rule)
 def test_what_was_broken_is_broken_or_unknown(planted: Planted) -> None:
-    mine = said(planted.pack, planted.chapter)[planted.rule]
+    mine = chapter_verdicts(planted.pack, planted.chapter)[planted.rule]
     # what was planted may lie after the end of a log that was cut
     due = {True: {"fail", "unknown", "not_applicable"}, False: {"fail", "unknown"}}
     clear = {what: verdicts for what, verdicts in mine.items() if not verdicts & due["cut" in what]}

@@ -6,7 +6,7 @@ import pytest
 
 from drivelint import catalogue
 from tests.clean.judging import EVERYWHERE, PACKS, broken, stable
-from tests.clean.planted import PLANTED, Planted, judged
+from tests.clean.planted import PLANTED, Planted, planted_verdicts
 
 # stable rules that no planted violation breaks, and why
 NOT_PLANTED = {
@@ -21,13 +21,13 @@ NOT_PLANTED = {
 @pytest.mark.ci
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda p: p.rule)
 def test_exactly_what_is_planted_is_found(planted: Planted) -> None:
-    assert broken(judged(planted.pack)[planted.rule]) == {planted.rule, *planted.implied}
+    assert broken(planted_verdicts(planted.pack)[planted.rule]) == {planted.rule, *planted.implied}
 
 
 @pytest.mark.ci
 @pytest.mark.parametrize("planted", PLANTED, ids=lambda p: p.rule)
 def test_unchanged_nothing_is_found(planted: Planted) -> None:
-    assert not broken(judged(planted.pack)[planted.clean])
+    assert not broken(planted_verdicts(planted.pack)[planted.clean])
 
 
 def test_every_stable_rule_is_planted_or_said_not_to_be() -> None:

@@ -13,7 +13,7 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError
 from drivelint.formats import read_trace
-from tests.engine.frames import FRAMES, LOG, in_frame, judged, numbers, plain, road
+from tests.engine.frames import FRAMES, LOG, drive_on_map, in_frame, numbers, plain, road
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,7 +34,7 @@ def converted(to: Target, out: Path, monkeypatch: pytest.MonkeyPatch, map_file: 
 def test_it_is_kept(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     again = converted(to, tmp_path / "out", monkeypatch)
     assert (again.geo_reference, again.geo_offset) == (REFERENCE, OFFSET)
-    drive = judged(again, road(tmp_path))
+    drive = drive_on_map(again, road(tmp_path))
     np.testing.assert_allclose(numbers(drive.trace)["x_m"], numbers(plain())["x_m"], atol=1e-3)
 
 
@@ -42,10 +42,10 @@ def test_it_is_kept(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize("to", TO)
 def test_on_a_given_map_it_is_the_maps(tmp_path: Path, to: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     map_file = road(tmp_path)
-    on_it = judged(in_frame(REFERENCE, OFFSET), map_file).trace
+    on_it = drive_on_map(in_frame(REFERENCE, OFFSET), map_file).trace
     again = converted(to, tmp_path / "out", monkeypatch, map_file)
     assert (again.geo_reference, again.geo_offset) == (on_it.geo_reference, on_it.geo_offset) != (REFERENCE, OFFSET)
-    assert numbers(judged(again, map_file).trace)["x_m"].tolist() == numbers(on_it)["x_m"].tolist()
+    assert numbers(drive_on_map(again, map_file).trace)["x_m"].tolist() == numbers(on_it)["x_m"].tolist()
 
 
 def test_a_projection_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

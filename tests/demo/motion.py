@@ -123,14 +123,14 @@ def separation(a: Track, b: Track) -> Floats:
     return found
 
 
-def stop_on_contact(ego: Track, others: list[Track]) -> list[Track]:
+def stop_on_contact(ego: Track, other_tracks: list[Track]) -> list[Track]:
     """Return all tracks, the ego's first; the ego and the first actor that it touches stop at the contact."""
-    deep = [np.flatnonzero(separation(ego, other) <= -_TOUCH_M) for other in others]
+    deep = [np.flatnonzero(separation(ego, other) <= -_TOUCH_M) for other in other_tracks]
     ticks = [int(found[0]) if len(found) else len(ego.t_s) for found in deep]
     first = min(ticks, default=len(ego.t_s))
     if first == len(ego.t_s):
-        return [ego, *others]
+        return [ego, *other_tracks]
     return [
         ego.stopped_at(first),
-        *(o.stopped_at(first) if tick == first else o for o, tick in zip(others, ticks, strict=True)),
+        *(o.stopped_at(first) if tick == first else o for o, tick in zip(other_tracks, ticks, strict=True)),
     ]

@@ -60,9 +60,9 @@ def _n(value: float) -> str:
     return repr(round(value, 6) + 0.0)
 
 
-def _from(said: Iterable[tuple[float, T]], start: float, end: float) -> list[tuple[float, T]]:
+def _from(station_values: Iterable[tuple[float, T]], start: float, end: float) -> list[tuple[float, T]]:
     """Return what holds between two stations, counted from the first of them."""
-    held = {max(s - start, 0.0): value for s, value in said if s < end}
+    held = {max(s - start, 0.0): value for s, value in station_values if s < end}
     return list(held.items())
 
 

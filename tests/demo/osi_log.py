@@ -96,10 +96,10 @@ def _number(name: str, track: Track) -> Floats:
     return np.round(values, _DECIMALS.get(name, 4)) + 0.0  # no sign on zero
 
 
-def _lights(track: Track, said: NDArray[np.str_], words: tuple[str, ...]) -> NDArray[np.int8]:
+def _lights(track: Track, light_words: NDArray[np.str_], words: tuple[str, ...]) -> NDArray[np.int8]:
     """Return the codes of light words; nobody on foot has lights."""
-    codes = np.full(said.shape, -1, np.int8)
+    codes = np.full(light_words.shape, -1, np.int8)
     if track.actor.body.kind != "pedestrian":
         for code, word in enumerate(words):
-            codes[said == word] = code
+            codes[light_words == word] = code
     return codes

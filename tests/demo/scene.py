@@ -21,13 +21,13 @@ SAMPLE_RATE_HZ = 10
 
 @dataclass(frozen=True)
 class Scene:
-    """One drive on one road. `shows`: what it is for, in a sentence. The ego is actor 1, the others 2, 3, ..."""
+    """One drive on one road. `shows`: what it is for, in a sentence. The ego is actor 1, the other actors 2, 3, ..."""
 
     name: str
     shows: str
     road: Road
     ego: Actor
-    others: tuple[Actor, ...]
+    other_actors: tuple[Actor, ...]
     duration_s: float
     road_name: str = ""
 
@@ -45,7 +45,7 @@ class Scene:
     def tracks(self) -> tuple[Track, ...]:
         """Return everybody's samples, the ego's first, all at the same times."""
         ego = actor_track(self.ego, self.road, self.duration_s)
-        others = [actor_track(other, self.road, self.duration_s) for other in self.others]
+        others = [actor_track(other, self.road, self.duration_s) for other in self.other_actors]
         rows = np.arange(0, len(ego.t_s), TICKS_PER_S // SAMPLE_RATE_HZ)
         return tuple(track.at(rows) for track in stop_on_contact(ego, others))
 
@@ -74,7 +74,7 @@ def lane_departure(ego: Actor, road: Road, duration_s: float) -> LaneDeparture:
     return LaneDeparture(float(track.t_s[k]), float(track.station[k] + along[k]))
 
 
-def place_oncoming(other: Actor, to: LaneDeparture, *, ahead_m: float) -> Actor:
+def place_oncoming(oncoming: Actor, to: LaneDeparture, *, ahead_m: float) -> Actor:
     """Return an oncoming actor placed so that it is `ahead_m` ahead of the ego, front to front, when the ego departs."""
     front = to.front + ahead_m
-    return other.starts(front + other.body.length_m / 2 + other.speed_mps * to.t_s, lane=-1)
+    return oncoming.starts(front + oncoming.body.length_m / 2 + oncoming.speed_mps * to.t_s, lane=-1)

@@ -51,7 +51,7 @@ def test_nothing_else_is_there_and_all_of_it_is_small(logs: dict[str, bytes]) ->
 
 
 @pytest.fixture(scope="module")
-def said() -> str:
+def verdicts_text() -> str:
     text: str = MAKE["verdicts"](FOLDER)
     return text
 
@@ -62,9 +62,9 @@ def sections(text: str) -> dict[str, list[str]]:
 
 
 @pytest.mark.ci
-def test_the_verdicts_are_those_that_were_reviewed(said: str) -> None:
+def test_the_verdicts_are_those_that_were_reviewed(verdicts_text: str) -> None:
     committed = sections((FOLDER / MAKE["VERDICTS"]).read_text(encoding="utf-8"))
-    now = sections(said)
+    now = sections(verdicts_text)
     assert now.keys() == committed.keys() == {scene.name for scene in all_scenes()}
     for name, lines in committed.items():
         assert now[name] == lines, f"{name}: {AGAIN}"
@@ -72,10 +72,10 @@ def test_the_verdicts_are_those_that_were_reviewed(said: str) -> None:
 
 @pytest.mark.ci
 @pytest.mark.parametrize("ending", ["", "-25mph"])
-def test_the_nine_verdicts_come_out_at_both_speeds(said: str, ending: str) -> None:
+def test_the_nine_verdicts_come_out_at_both_speeds(verdicts_text: str, ending: str) -> None:
     found: dict[str, dict[str, str]] = {}
     for run in TABLE_1:
-        for line in sections(said)[f"{run}{ending}"]:
+        for line in sections(verdicts_text)[f"{run}{ending}"]:
             verdict, rule, profile, *_ = line.split()
             if rule == "r162.safe-distance-ahead":
                 found.setdefault(run, {})[profile] = verdict
@@ -94,7 +94,7 @@ def test_the_overtakes_end_as_their_names_say(scene: Any) -> None:
 
 
 @pytest.mark.ci
-def test_no_failure_in_the_clean_drive(said: str) -> None:
-    words = [line.split() for line in sections(said)["clean-drive"]]
+def test_no_failure_in_the_clean_drive(verdicts_text: str) -> None:
+    words = [line.split() for line in sections(verdicts_text)["clean-drive"]]
     # a log of positions and indicators has nothing of lamps and horn: it is not asked about them
     assert {word[0] for word in words} == {"pass", "not"}

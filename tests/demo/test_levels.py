@@ -14,13 +14,13 @@ from drivelint.formats import load_map
 from drivelint.report.progress import Silent
 from drivelint.road.map_reader import MapSource
 from drivelint.run import CheckOptions, check
-from tests.blinding import changed, renamed
+from tests.blinding import change_table, renamed
 from tests.demo.actors import car, lorry
 from tests.demo.levels import TwoLevelRoad, level_scenes
 from tests.demo.motion import separation
 from tests.demo.opendrive import opendrive
 from tests.demo.scene_drive import drive_of_scene
-from tests.scenes import derived, judged, rows
+from tests.scenes import derived, rows, verdict_rows
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 PACKS = ("alks-r157", "comfort", "criticality", "declared", "performance", "rss", "stvo", "ukhc")
 SCENES = {scene.name: scene for scene in level_scenes()}
-EACH = pytest.mark.parametrize("name", SCENES)
+EACH_SCENE = pytest.mark.parametrize("name", SCENES)
 CONTACT = "ukhc.no-collision"
 Verdicts = dict[tuple[str, str | None], set[str]]
 
@@ -57,7 +57,7 @@ def without_heights(drive: Drive) -> Drive:
         nothing = pa.nulls(states.num_rows, pa.float64())
         return states.set_column(states.schema.get_field_index("z_m"), "z_m", nothing)
 
-    return changed(drive, "actor_state", change)
+    return change_table(drive, "actor_state", change)
 
 
 def second_at(scene: Scene, *heights: tuple[float, float]) -> Scene:
@@ -66,10 +66,10 @@ def second_at(scene: Scene, *heights: tuple[float, float]) -> Scene:
     return replace(scene, road=replace(road, second=replace(road.second, heights=heights)))
 
 
-def by_rule(found: Iterable[Row], *, without: str | None = None) -> Verdicts:
+def by_rule(rows: Iterable[Row], *, without: str | None = None) -> Verdicts:
     """Return the verdicts of each rule and profile."""
     verdicts: Verdicts = {}
-    for row in found:
+    for row in rows:
         if row["rule_id"] != without:
             verdicts.setdefault((row["rule_id"], row["profile"]), set()).add(row["verdict"])
     return verdicts
@@ -80,7 +80,7 @@ def plan_gap(a: Track, b: Track) -> float:
     return float(separation(replace(a, ground=b.ground), b).min())
 
 
-@EACH
+@EACH_SCENE
 def test_the_boxes_meet_in_plan_and_not_in_height(name: str) -> None:
     ego, *others = SCENES[name].tracks
     assert all(plan_gap(ego, other) < -1.0 for other in others)
@@ -88,11 +88,11 @@ def test_the_boxes_meet_in_plan_and_not_in_height(name: str) -> None:
 
 
 @cache
-def said(*variants: str) -> dict[str, list[Row]]:
+def scene_rows(*variants: str) -> dict[str, list[Row]]:
     """Return what all rules say of every scene, and of its ego alone, with and without the heights of log and map, in one run."""
     drives = []
     for scene in SCENES.values():
-        for company, one in (("met", scene), ("alone", replace(scene, others=()))):
+        for company, one in (("met", scene), ("alone", replace(scene, other_actors=()))):
             drive = drive_of_scene(one)
             flat = on_flat_map(drive, one)
             versions = {
@@ -103,17 +103,17 @@ def said(*variants: str) -> dict[str, list[Row]]:
             }
             drives += [renamed(versions[variant], f"{scene.name} {company} {variant}") for variant in variants]
     found: dict[str, list[Row]] = {drive.trace.drive_id: [] for drive in drives}
-    for row in judged(drives, rules=PACKS):
+    for row in verdict_rows(drives, rules=PACKS):
         found[row["drive_id"]].append(row)
     return found
 
 
 @pytest.mark.sample(0, ci=6)
-@EACH
+@EACH_SCENE
 @pytest.mark.parametrize("variant", ["both", "log"])
 def test_with_heights_the_other_level_changes_no_verdict(name: str, variant: str) -> None:
     """What the rules say is what they say of the ego alone, but that whoever is near, and not over or under it, is not touched."""
-    all_said = said("both", "log")
+    all_said = scene_rows("both", "log")
     found, expected = all_said[f"{name} met {variant}"], all_said[f"{name} alone {variant}"]
     assert expected
     assert by_rule(found, without=CONTACT) == by_rule(expected, without=CONTACT)
@@ -122,14 +122,14 @@ def test_with_heights_the_other_level_changes_no_verdict(name: str, variant: str
 
 
 @pytest.mark.ci
-@EACH
+@EACH_SCENE
 @pytest.mark.parametrize("variant", ["map", "none"])
 def test_without_the_heights_of_the_log_what_depends_on_them_is_unknown(name: str, variant: str) -> None:
-    all_said = said("map", "none")
+    all_said = scene_rows("map", "none")
     found = all_said[f"{name} met {variant}"]
     contacts = [row for row in found if row["rule_id"] == CONTACT]
     assert {row["verdict"] for row in contacts} == {"unknown"}
-    assert {row["object_id"] for row in contacts} == {str(n) for n, _ in enumerate(SCENES[name].others, 2)}
+    assert {row["object_id"] for row in contacts} == {str(n) for n, _ in enumerate(SCENES[name].other_actors, 2)}
     now, expected = by_rule(found), by_rule(all_said[f"{name} alone {variant}"])
     assert now.keys() == expected.keys()
     assert all(now[key] <= {*expected[key], "unknown"} for key in now)
@@ -154,7 +154,7 @@ def test_at_the_same_place_on_the_ego_s_level_it_is_a_contact(name: str, heights
     drive = drive_of_scene(scene)
     assert hit
     for one in (drive, on_flat_map(drive, scene)):
-        failed = [row for row in judged([one], rules=[CONTACT]) if row["verdict"] == "fail"]
+        failed = [row for row in verdict_rows([one], rules=[CONTACT]) if row["verdict"] == "fail"]
         assert {row["object_id"] for row in failed} == hit
 
 
@@ -164,12 +164,12 @@ def test_bodies_as_high_as_the_deck_are_not_taken_to_be_apart(deck_m: float) -> 
     """Under a deck that a car passes, the lorry on the lower one may touch the lorry on the upper one."""
     scene = second_at(SCENES["deck"], (0.0, deck_m), (400.0, 2.0 + deck_m), (800.0, deck_m))
     lorries = replace(scene, ego=replace(scene.ego, body=lorry().body._replace(height_m=4.5)))
-    cars = replace(scene, others=tuple(replace(other, body=car().body) for other in scene.others))
+    cars = replace(scene, other_actors=tuple(replace(other, body=car().body) for other in scene.other_actors))
     for one, apart in ((lorries, False), (cars, True)):
         ego, other = one.tracks
         assert (separation(ego, other).min() > 0.0) == apart
         for drive in (drive_of_scene(one), on_flat_map(drive_of_scene(one), one)):
-            verdicts = {row["verdict"] for row in judged([drive], rules=[CONTACT])}
+            verdicts = {row["verdict"] for row in verdict_rows([drive], rules=[CONTACT])}
             assert verdicts <= ({"not_applicable"} if apart else {"fail", "unknown"})
 
 
@@ -177,7 +177,7 @@ def test_bodies_as_high_as_the_deck_are_not_taken_to_be_apart(deck_m: float) -> 
 def test_the_ego_is_on_the_deck_at_its_height(upper: bool) -> None:
     scene = SCENES["deck"]
     if upper:
-        scene = replace(scene, ego=scene.ego.on_the_other_level(), others=())
+        scene = replace(scene, ego=scene.ego.on_the_other_level(), other_actors=())
     drive = drive_of_scene(scene)
     assert {row["lanelet_id"] for row in rows(derived(drive, tables=["ego_lane"]), "FROM ego_lane")} == {
         "2.0.1" if upper else "1.0.1"
@@ -186,7 +186,7 @@ def test_the_ego_is_on_the_deck_at_its_height(upper: bool) -> None:
 
 @pytest.mark.ci
 @pytest.mark.sample(2)
-@EACH
+@EACH_SCENE
 @pytest.mark.parametrize("height", [0.0, 0.75])
 def test_a_height_that_the_log_does_not_have_rules_nothing_out(name: str, height: float) -> None:
     """Others at 0, or at half their box, while the ego has a height: the heights are not those of one log."""
@@ -197,8 +197,8 @@ def test_a_height_that_the_log_does_not_have_rules_nothing_out(name: str, height
         z = np.where(is_ego, states["z_m"].to_numpy() + 40.0, height if name != "deck" else 8 * height / 3)
         return states.set_column(states.schema.get_field_index("z_m"), "z_m", pa.array(z))
 
-    drive = changed(on_flat_map(drive_of_scene(scene), scene), "actor_state", change)
-    verdicts = {row["verdict"] for row in judged([drive], rules=[CONTACT])}
+    drive = change_table(on_flat_map(drive_of_scene(scene), scene), "actor_state", change)
+    verdicts = {row["verdict"] for row in verdict_rows([drive], rules=[CONTACT])}
     assert verdicts == {"unknown"}
 
 

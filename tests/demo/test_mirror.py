@@ -6,7 +6,7 @@ import pytest
 
 from tests.demo.scene_drive import drive_of_scene
 from tests.demo.scenes import all_scenes
-from tests.scenes import Row, judged
+from tests.scenes import Row, verdict_rows
 
 MIRRORED = ("near-miss", "collision-25mph", "signal-late", "overtake-two-in-one-go", "cyclist-at-1.0m")
 SAME = ("rule_id", "profile", "object_id", "occurrence", "verdict", "reason_code", "t_ref_ns", "t_start_ns", "t_end_ns")
@@ -19,7 +19,7 @@ def test_mirrored_scenes_have_the_same_verdicts() -> None:
     pairs = [[drive_of_scene(scene.driven_on_the(hand)) for hand in ("left", "right")] for scene in scenes]
     rows: dict[str, list[Row]] = {}
     for hand in (0, 1):  # the maps of a batch are those of its drives
-        for row in judged([pair[hand] for pair in pairs], rules=["ukhc"], profiles=["relaxed", "nominal"]):
+        for row in verdict_rows([pair[hand] for pair in pairs], rules=["ukhc"], profiles=["relaxed", "nominal"]):
             rows.setdefault(row["drive_id"], []).append(row)
     for pair in pairs:
         one, other = (rows[each.trace.drive_id] for each in pair)

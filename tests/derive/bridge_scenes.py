@@ -49,4 +49,4 @@ def lifted(scene: Drive, heights: dict[str, float], slope: float = 0.0) -> Drive
         z = pa.array(ground + slope * x, from_pandas=True)
         return states.set_column(states.schema.get_field_index("z_m"), "z_m", z)
 
-    return blinding.changed(scene, "actor_state", change)
+    return blinding.change_table(scene, "actor_state", change)

@@ -20,7 +20,7 @@ R = 15.0  # the junction is a square of +-15 m around the origin
 ARM = 185.0
 TURN = R * math.pi / 2
 _ARC = 1 / R
-_BOTH = xodr.section(0, linked(1), linked(-1))
+_BOTH_LANES = xodr.section(0, linked(1), linked(-1))
 _FLIPPED = xodr.section(0, linked(1, before=-1), linked(-1, before=1))
 
 
@@ -35,13 +35,11 @@ def stop_line(name: str, s: float, t: float) -> str:
     return signal(name, s, "294", t=t, more=f'width="{LANE}"')
 
 
-def crosswalk(name: str, s: float, width: float = 3.0, said: str = "") -> str:
+def crosswalk(name: str, s: float, width: float = 3.0, label: str = "") -> str:
     """Return a crossing over both lanes, from s to s + width."""
     corners = [(s, LANE), (s, -LANE), (s + width, -LANE), (s + width, LANE)]
     outline = "".join(f'<cornerRoad s="{a}" t="{b}" dz="0" height="0" id="{i}"/>' for i, (a, b) in enumerate(corners))
-    return (
-        f'<object type="crosswalk" id="{name}" name="{said}" s="{s}" t="0"><outline id="0">{outline}</outline></object>'
-    )
+    return f'<object type="crosswalk" id="{name}" name="{label}" s="{s}" t="0"><outline id="0">{outline}</outline></object>'
 
 
 @cache
@@ -61,12 +59,12 @@ def cross(
         return f"{limited(30)}<signals>{own}</signals><objects>{put}</objects>"
 
     def part(
-        number: str, piece: tuple[float, float], pose: tuple[float, float, float], link: str, lanes: str = _BOTH
+        number: str, piece: tuple[float, float], pose: tuple[float, float, float], link: str, lanes: str = _BOTH_LANES
     ) -> str:
         junction = "9" if len(number) > 1 else "-1"
         return xodr.road(number, plan((piece,), pose), lanes, piece[0], link, rule, extra(number), junction)
 
-    def joined(before: tuple[str, str], after: str) -> str:
+    def road_links(before: tuple[str, str], after: str) -> str:
         return (
             f'<predecessor elementType="road" elementId="{before[0]}" contactPoint="{before[1]}"/>'
             f'<successor elementType="road" elementId="{after}" contactPoint="start"/>'
@@ -98,7 +96,7 @@ def cross(
         part("3", (ARM, 0.0), (0.0, -R, -math.pi / 2), start),
         part("4", (ARM, 0.0), (0.0, R, math.pi / 2), start),
         *(
-            part(number, piece, pose, joined(before, after), _BOTH if before[1] == "end" else _FLIPPED)
+            part(number, piece, pose, road_links(before, after), _BOTH_LANES if before[1] == "end" else _FLIPPED)
             for number, piece, pose, before, after in inside
         ),
         f'<junction id="9" name="crossroads">{connections}</junction>',
@@ -117,12 +115,12 @@ def cross(
     return ways
 
 
-def lit(told: Drive, signal_id: str, *states: tuple[float, str | None]) -> Drive:
+def lit(scene: Drive, signal_id: str, *states: tuple[float, str | None]) -> Drive:
     """Return the drive with a light that shows each state from its time in seconds on."""
-    table = told.trace.tables["signal_state"]
+    table = scene.trace.tables["signal_state"]
     new = [
-        {"drive_id": told.trace.drive_id, "signal_id": signal_id, "t_ns": round(t * 1e9), "state": state}
+        {"drive_id": scene.trace.drive_id, "signal_id": signal_id, "t_ns": round(t * 1e9), "state": state}
         for t, state in states
     ]
-    told.trace.tables["signal_state"] = pa.concat_tables([table, pa.Table.from_pylist(new, schema=table.schema)])
-    return told
+    scene.trace.tables["signal_state"] = pa.concat_tables([table, pa.Table.from_pylist(new, schema=table.schema)])
+    return scene

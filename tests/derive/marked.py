@@ -59,7 +59,7 @@ def ease(u: Floats) -> Floats:
 
 def offsets(way: Road, t: Floats, begin: float, lasts: float = 4.0, *, to: float = 0.5, start: float = 1.5) -> Floats:
     """Return offsets of one that goes from the lane `start` (0.5: next to the centre line) to the lane `to`."""
-    sign = 1 if way.own > 0 else -1
+    sign = 1 if way.ego_d > 0 else -1
     return sign * LANE * (start + (to - start) * ease((t - begin) / lasts))
 
 
@@ -81,16 +81,16 @@ def apart(hand: str, gap: float = 0.0, centre: str = "solid", kind: str = "rural
     """
     side = 1 if hand == "lht" else -1
 
-    def one(number: str, pose: tuple[float, float, float], length: float) -> str:
+    def numbered_road(number: str, pose: tuple[float, float, float], length: float) -> str:
         lane = linked(side).replace("</lane>", mark("solid") + "</lane>")
         text = limited(60).replace("rural", kind)
         section = xodr.section(0, lane, centre=mark(centre))
         rule = f'rule="{hand.upper()}"'
         return xodr.road(number, plan(((length, 0.0),), pose), section, length, attributes=rule, more=text)
 
-    roads = [one("1", (0.0, 0.0, 0.0), 600.0)]
+    roads = [numbered_road("1", (0.0, 0.0, 0.0), 600.0)]
     if gap < 50.0:
-        roads.append(one("2", (600.0, -side * gap, math.pi), 600.0 - since))
+        roads.append(numbered_road("2", (600.0, -side * gap, math.pi), 600.0 - since))
     text = xodr.xodr(*roads)
     name = f"apart-{hand}-{gap}-{centre}-{kind}-{since}.xodr"
     return Road(load_map(MapSource(name, text.encode()), handedness=hand), ((600.0, 0.0),))

@@ -17,6 +17,6 @@ def scene(hand: str = "rht", end: float = 30.0, *, abort: bool = False) -> tuple
         s = 50 + np.concatenate([[0.0], np.cumsum((v_t[1:] + v_t[:-1]) / 2 * np.diff(t))])
     d = swing(way, s, 150, 165 if abort else 280, share=0.6 if abort else 1.0)
     ego = moving("ego", way, t, s, d)
-    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
-    ov = moving("ov", way, t, 590 - 9 * t, way.other)
+    vbp = moving("vbp", way, t, 140 + 4 * t, way.ego_d)
+    ov = moving("ov", way, t, 590 - 9 * t, way.oncoming_d)
     return way, [ego, vbp, ov]

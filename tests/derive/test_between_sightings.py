@@ -12,10 +12,10 @@ from tests.scenes import Actor, Road, derived, drive, moving, road, rows, times
 T = times(5.0)
 
 
-def least(way: Road, other: Actor) -> dict[float, float]:
+def least(way: Road, lost_actor: Actor) -> dict[float, float]:
     """Return by time how near the other may be while it has no position: the ego stands at s = 100."""
-    ego = moving("ego", way, T, np.full(len(T), 100.0), way.own)
-    con = derived(drive([ego, other], way.environment), tables=["hidden"])
+    ego = moving("ego", way, T, np.full(len(T), 100.0), way.ego_d)
+    con = derived(drive([ego, lost_actor], way.environment), tables=["hidden"])
     return {row["t_ns"] / 1e9: row["least_m"] for row in rows(con, "FROM hidden WHERE object_id = 'x' ORDER BY t_ns")}
 
 
@@ -33,9 +33,9 @@ def test_no_vehicle_is_nearer_than_the_bound(hole_s: float) -> None:
     # half of the time towards the line's other side at 10 m/s2, half back: at rest on the line at both ends
     held = np.minimum(u, 1 - u)
     aside = 5 * (hole_s * held) ** 2
-    other = without_velocity(moving("x", way, T, np.full(len(T), 130.0), way.own + 30 - aside, kind="car"))
-    found = least(way, other.lost((u > 0) & (u < 1)))
+    other = without_velocity(moving("x", way, T, np.full(len(T), 130.0), way.ego_d + 30 - aside, kind="car"))
+    found = least(way, other.without_position((u > 0) & (u < 1)))
     for t, bound in found.items():
         k = round(t * 10)
-        apart = math.hypot(other.x[k] - 100, other.y[k] - way.own)
+        apart = math.hypot(other.x[k] - 100, other.y[k] - way.ego_d)
         assert bound <= apart - math.hypot(4.8, 1.8) + 1e-6 or bound == 0

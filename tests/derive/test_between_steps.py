@@ -10,7 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from tests.scenes import Road, derived, drive, judged, moving, road, rows, times
+from tests.scenes import Road, derived, drive, moving, road, rows, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -31,7 +31,7 @@ def between(scene: Drive) -> list[Row]:
 def verdict(*scenes: Drive, rule: str = "ukhc.no-collision") -> list[str]:
     """Return what the rule says of each drive: the worst of its rows."""
     found: dict[str, str] = {}
-    for row in judged(list(scenes), rules=[rule]):
+    for row in verdict_rows(list(scenes), rules=[rule]):
         if RANK[row["verdict"]] > RANK[found.get(row["drive_id"], "")]:
             found[row["drive_id"]] = row["verdict"]
     return [found[scene.trace.drive_id] for scene in scenes]
@@ -64,10 +64,10 @@ def cyclist(rate: float, gap: float, *, hand: str = "rht", phase: float = 0.0) -
     """Return the ego at 13 m/s past a cyclist at 3 m/s in the lane beside, `gap` metres between the two."""
     way = road(((600.0, 0.0),), hand, (2, 1) if hand == "lht" else (1, 2))
     t = times(12.0, period=1 / rate) + phase
-    side = math.copysign(1.0, way.own)
-    ego = moving("ego", way, t, 200 + 13 * (t - 6), way.own)
+    side = math.copysign(1.0, way.ego_d)
+    ego = moving("ego", way, t, 200 + 13 * (t - 6), way.ego_d)
     rider = moving(
-        "c", way, t, 200 + 3 * (t - 6), way.own + side * (0.9 + gap + 0.3), kind="bicycle", length=1.8, width=0.6
+        "c", way, t, 200 + 3 * (t - 6), way.ego_d + side * (0.9 + gap + 0.3), kind="bicycle", length=1.8, width=0.6
     )
     return drive([ego, rider], way.environment)
 
@@ -101,13 +101,13 @@ class Meeting(NamedTuple):
         """Return it with one of `every` samples of a log of 20 Hz."""
         t = times(8.0, period=0.05)
 
-        def gone(v: float, brake: float, at: float) -> Floats:
+        def stations(v: float, brake: float, at: float) -> Floats:
             u = np.clip(t - at, 0.0, v / max(brake, 1e-9))
             s: Floats = v * (t - 4) - brake * u**2 / 2 - brake * u * np.clip(t - at - u, 0.0, None)
             return s
 
-        ego = moving("ego", line(), t, gone(15.0, self.brake, 3.6), 0.3 * np.sin(self.swing * t))
-        s = gone(self.v, self.brake / 2, 4.2) - self.late_m
+        ego = moving("ego", line(), t, stations(15.0, self.brake, 3.6), 0.3 * np.sin(self.swing * t))
+        s = stations(self.v, self.brake / 2, 4.2) - self.late_m
         other = moving("o", line(math.radians(self.degrees)), t, s, 0.2 * np.sin(self.swing * t))
         first = int(self.phase * every) % every
         mask = np.arange(len(t)) % every == first
@@ -130,11 +130,11 @@ MEETINGS = st.builds(
 @given(st.lists(MEETINGS, min_size=12, max_size=12))
 @example([Meeting(90, 15.0, late, 0.0, 0.0, 0.5) for late in np.linspace(-6, 6, 25)])
 @example([Meeting(180, 20.0, late, 1.0, 3.0, 0.5) for late in np.linspace(-6, 6, 13)])
-def test_fewer_samples_never_turn_a_fail_into_a_pass(found: list[Meeting]) -> None:
+def test_fewer_samples_never_turn_a_fail_into_a_pass(meetings: list[Meeting]) -> None:
     every = (1, 2, 4, 10, 20)
-    scenes = [m.drive(n, f"{no:02}-{n}") for no, m in enumerate(found) for n in every]
+    scenes = [m.drive(n, f"{no:02}-{n}") for no, m in enumerate(meetings) for n in every]
     told = verdict(*scenes)
-    for no, each in enumerate(found):
+    for no, each in enumerate(meetings):
         fine, *coarse = told[no * len(every) : (no + 1) * len(every)]
         if fine == "fail":
             assert set(coarse) <= {"fail", "unknown"}, (each, coarse)

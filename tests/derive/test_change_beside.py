@@ -10,7 +10,7 @@ from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
 from tests.derive.marked import ease, mark
 from tests.formats.opendrive import xodr
-from tests.scenes import LANE, Road, Row, drive, judged, linked, moving, plan, times
+from tests.scenes import LANE, Road, Row, drive, linked, moving, plan, times, verdict_rows
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 PERIODS = (0.05, 0.1, 0.2, 0.5)
@@ -41,7 +41,7 @@ def change(hand: str, period: float, *, ahead_m: float, faster_mps: float = 0.0)
     t = times(16.0, period=period)
     ego = moving("ego", way, t, 100 + 25 * t, side * LANE * (2.5 - ease((t - 6) / 4.0)))
     other = moving("other", way, t, 100 + ahead_m + 25 * t + faster_mps * (t - 6), side * LANE * 1.5)
-    return judged([drive([ego, other], way.environment)], rules=[SAFE])
+    return verdict_rows([drive([ego, other], way.environment)], rules=[SAFE])
 
 
 def verdict(rows: list[Row]) -> str:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 def ride(way: Road | None = None) -> Actor:
     way, t = way or road(), times(1.0)
-    return moving("ego", way, t, 5 + 10 * t, way.own)
+    return moving("ego", way, t, 5 + 10 * t, way.ego_d)
 
 
 def highway(kind: str | None, *lanes: tuple[int, str]) -> Road:
@@ -43,7 +43,7 @@ def highway(kind: str | None, *lanes: tuple[int, str]) -> Road:
     return Road(load_map(MapSource("way.xodr", text.encode())), line)
 
 
-BOTH = ((1, "driving"), (-1, "driving"))
+BOTH_LANES = ((1, "driving"), (-1, "driving"))
 
 
 def signals(scene: Drive) -> dict[str, bool]:
@@ -61,7 +61,7 @@ def test_every_signal_that_a_rule_requires_is_answered_for_whatever_the_log() ->
 
 @pytest.mark.ci
 def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
-    way = highway("rural", *BOTH)
+    way = highway("rural", *BOTH_LANES)
     for scene in (drive([ride()], None), drive([ride(way)], way.environment)):
         for row in capabilities(scene):
             assert row["reason"], row

@@ -28,15 +28,15 @@ def test_gaps_and_clearances_are_those_of_the_boxes(curvature: float) -> None:
     """A weaving car beside a weaving ego: across the lane as on a straight road, box to box as shapely says."""
     way = road(((500.0, curvature),))
     t = times(20.0)
-    ego = moving("ego", way, t, 60 + 10 * t, way.own + 0.3 * np.sin(t))
-    other = moving("x", way, t, 52 + 10.8 * t, way.own + 2.9 + 0.2 * np.cos(t))
+    ego = moving("ego", way, t, 60 + 10 * t, way.ego_d + 0.3 * np.sin(t))
+    other = moving("x", way, t, 52 + 10.8 * t, way.ego_d + 2.9 + 0.2 * np.cos(t))
     con = derived(drive([ego, other], way.environment), tables=["beside"])
     found = {row["t_ns"]: row for row in rows(con, "FROM beside")}
     assert 80 < len(found) < 130
     for k, at in enumerate(t):
         row = found.get(round(at * 1e9))
         # stations grow faster outside of a bend: along the lane's own centre line
-        stretch = 1 - way.own * curvature
+        stretch = 1 - way.ego_d * curvature
         ahead = (0.8 * at - 8) * stretch
         if abs(ahead) < 4.6:
             assert row is not None
@@ -68,7 +68,7 @@ def test_the_ego_passes_a_parked_car_round_the_overtaking_side(hand: str) -> Non
     t = times(20.0)
     s = 50 + 12 * t
     ego = moving("ego", way, t, s, swing(way, s, 150, 230))
-    parked = standing("x", way, t, 200, way.own)
+    parked = standing("x", way, t, 200, way.ego_d)
     (found,) = passings(way, ego, parked)
     assert found["side"] == ("right" if hand == "rht" else "left")
     assert (found["ego_passes"], found["same_lane"], found["whole"]) == (True, True, True)

@@ -28,7 +28,7 @@ def test_one_cuts_in_from_either_side(hand: str, of: str) -> None:
     (found,) = cuts(way, ego, other)
     left = (hand == "rht") == (of == "in")
     assert (found["object_id"], found["side"], found["begin_seen"]) == ("x", "left" if left else "right", True)
-    lane = abs(mine) * LANE * np.sign(way.own)
+    lane = abs(mine) * LANE * np.sign(way.ego_d)
     inside = LANE / 2 + 0.9 * np.cos(other.yaw) + 2.4 * np.abs(np.sin(other.yaw)) - np.abs(other.y - lane)
     k = int(np.argmax(inside > 0.3))
     assert found["t_ns"] == round(t[k] * 1e9)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, Actor, Road, drive, judged, moving, road, saying, standing, times
+from tests.scenes import LANE, Actor, Road, drive, moving, road, saying, standing, times, verdict_rows
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 KINDS = pytest.mark.parametrize("kind", ["pedestrian", "animal", "object", "bicycle", "car", None])
@@ -33,7 +33,7 @@ def braked(way: Road, d: float, *, stays: float = 0.0) -> Actor:
 
 
 def verdicts(scene: Any, rule: str) -> set[str]:
-    return {row["verdict"] for row in judged([saying(scene, road_type="motorway")], rules=[rule])}
+    return {row["verdict"] for row in verdict_rows([saying(scene, road_type="motorway")], rules=[rule])}
 
 
 def small(actor: Actor, kind: str | None) -> Actor:
@@ -46,7 +46,7 @@ def test_braking_and_stopping_for_somebody_in_the_lane_is_no_breach(hand: str, k
     way, d = motorway(hand)
     ego = braked(way, d, stays=8.0)
     other = small(standing("x", way, ego.t_s, 460.0, d), kind)
-    found = judged(
+    found = verdict_rows(
         [saying(drive([ego, other], way.environment), road_type="motorway")],
         rules=["stvo.rg2", "stvo.ri1", "ukhc.r240.no-stopping"],
     )

@@ -25,10 +25,10 @@ def test_every_step_over_the_centre_line(hand: str) -> None:
     """A wobble over a solid line to one that comes the other way; its furthest corner by hand."""
     way = marked(hand)
     t = times(10.0)
-    d = way.own - np.sign(way.own) * 1.2 * ease((t - 3) / 1.5) * (1 - ease((t - 6) / 1.5))
+    d = way.ego_d - np.sign(way.ego_d) * 1.2 * ease((t - 3) / 1.5) * (1 - ease((t - 6) / 1.5))
     ego = moving("ego", way, t, 100 + 10 * t, d)
     found = rows(tables(way, ego), "FROM line_step ORDER BY t_ns")
-    out = np.abs(d - way.own) + 0.9 * np.cos(ego.yaw) + 2.4 * np.abs(np.sin(ego.yaw)) - LANE / 2
+    out = np.abs(d - way.ego_d) + 0.9 * np.cos(ego.yaw) + 2.4 * np.abs(np.sin(ego.yaw)) - LANE / 2
     assert seconds(found, "t_ns") == pytest.approx(list(t[out > 0.05]))
     assert [row["out_m"] for row in found] == pytest.approx(list(out[out > 0.05]), abs=1e-6)
     assert {(r["side"], r["marking"], r["forbidden"], r["beyond"]) for r in found} == {

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.scenes import LANE, derived, drive, judged, moving, road, rows, swing, times
+from tests.scenes import LANE, derived, drive, moving, road, rows, swing, times, verdict_rows
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
@@ -42,7 +42,7 @@ def test_one_that_comes_in_the_lane_in_which_the_ego_overtakes_is_ahead_of_it(ha
     t = times(12.0)
     s = 50 + 12 * t
     ego = moving("ego", way, t, s, swing(way, s, 70, 150, share=1.0))
-    other = moving("x", way, t, 400 - 12 * t, -way.own)
+    other = moving("x", way, t, 400 - 12 * t, -way.ego_d)
     con = derived(drive([ego, other], way.environment), tables=["lead", "vehicle_ahead"])
     assert {row["object_id"] for row in rows(con, "FROM lead")} == {None}
     ahead = {row["t_ns"]: row for row in rows(con, "FROM vehicle_ahead WHERE object_id = 'x'")}
@@ -68,8 +68,8 @@ def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
     """A bus slides over the lane ahead at 18 m/s, turned so: away from the ego it goes with the cosine of that."""
     way = road()
     t = times(8.0)
-    ego = moving("ego", way, t, 100 + 18 * t, way.own)
-    s, d = 190 + 18 * math.cos(turned) * (t - 4), way.own + 18 * math.sin(turned) * (t - 4)
+    ego = moving("ego", way, t, 100 + 18 * t, way.ego_d)
+    s, d = 190 + 18 * math.cos(turned) * (t - 4), way.ego_d + 18 * math.sin(turned) * (t - 4)
     bus = replace(moving("bus", way, t, s, d, length=11.0, width=2.5), yaw=np.full(len(t), turned))
     found = rows(
         derived(drive([ego, bus], way.environment), tables=["vehicle_ahead"]),
@@ -84,7 +84,7 @@ def test_the_speed_of_one_ahead_is_that_along_the_lane(turned: float) -> None:
     if turned == math.pi / 2:
         worst = [
             r
-            for r in judged([drive([ego, bus], way.environment)], rules=["criticality.ttc"])
+            for r in verdict_rows([drive([ego, bus], way.environment)], rules=["criticality.ttc"])
             if r["object_id"] == "bus"
         ]
         assert "pass" not in {row["verdict"] for row in worst}

@@ -15,7 +15,7 @@ def stayer(way: Road) -> Actor:
     """Drive at 20 m/s in the through lane."""
     t = times(25.0)
     straight = Road(way.environment, ((MAIN + 250, 0.0),))
-    return moving("ego", straight, t, 20 + 20 * t, straight.own)
+    return moving("ego", straight, t, 20 + 20 * t, straight.ego_d)
 
 
 @pytest.mark.parametrize(("hand", "side", "lane"), [("rht", "right", -2), ("lht", "left", 2)])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross
-from tests.scenes import derived, drive, judged, moving, road, rows, standing, swing, times
+from tests.scenes import derived, drive, moving, road, rows, standing, swing, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -32,7 +32,7 @@ def stopping(t: Floats, v: float, at: float, by: float, again: float | None = No
 def turning(hand: str = "rht", *, again: float | None = None, period: float = 0.1) -> Drive:
     """Return the ego's turn across the oncoming traffic (in the junction from 7.9 s on) before one at 14 m/s that brakes at 8 s."""
     ways, t = cross(hand), times(END, period=period)
-    own, across = ways["we"].own, "ws" if hand == "lht" else "wn"
+    own, across = ways["we"].ego_d, "ws" if hand == "lht" else "wn"
     ego = moving("ego", ways[across], t, 120 + 8 * t, own)
     braking = moving("o", ways["ew"], t, way_of(stopping(t, 14.0, 8.0, 6.0, again), 46.0, t), own)
     return drive([ego, braking], ways["we"].environment)
@@ -43,7 +43,7 @@ def forced(scene: Drive) -> list[Row]:
 
 
 def verdicts(scene: Drive, rule: str) -> list[tuple[str, Any]]:
-    return [(row["verdict"], row["object_id"]) for row in judged([scene], rules=[rule]) if row["ego_id"] == "ego"]
+    return [(row["verdict"], row["object_id"]) for row in verdict_rows([scene], rules=[rule]) if row["ego_id"] == "ego"]
 
 
 GAP = "ukhc.r180.right-turn-gap"
@@ -75,8 +75,8 @@ def passing(hand: str) -> Drive:
     t = times(END)
     s = 50 + 10 * t
     ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
-    parked = standing("p", way, t, 200.0, way.own)
-    other = moving("o", way, t, 380.0 - way_of(stopping(t, 16.0, 11.0, 6.5), 0.0, t), way.other)
+    parked = standing("p", way, t, 200.0, way.ego_d)
+    other = moving("o", way, t, 380.0 - way_of(stopping(t, 16.0, 11.0, 6.5), 0.0, t), way.oncoming_d)
     return drive([ego, parked, other], way.environment)
 
 
@@ -99,9 +99,9 @@ def crashing(hand: str, by: float) -> Drive:
     t = times(END)
     s = 50 + 10 * np.minimum(t, 15.0)
     ego = moving("ego", way, t, s, swing(way, s, 170.0, 215.0))
-    parked = standing("p", way, t, 200.0, way.own)
+    parked = standing("p", way, t, 200.0, way.ego_d)
     gone = way_of(np.where(t > 15, 0.0, stopping(t, 12.0, 13.5, by)), 0.0, t)
-    other = moving("o", way, t, 204.78 + gone[-1] - gone, way.other)
+    other = moving("o", way, t, 204.78 + gone[-1] - gone, way.oncoming_d)
     return drive([ego, parked, other], way.environment)
 
 
@@ -112,7 +112,7 @@ def test_the_deceleration_of_a_crash_is_no_braking(hand: str) -> None:
     scene = crashing(hand, by=0.0)
     assert [row["object_id"] for row in rows(derived(scene, tables=["impact"]), "FROM impact")] == ["o"]
     assert forced(scene) == []
-    (told,) = [row for row in judged([scene], rules=[GIVE_WAY]) if row["ego_id"] == "ego"]
+    (told,) = [row for row in verdict_rows([scene], rules=[GIVE_WAY]) if row["ego_id"] == "ego"]
     assert (told["verdict"], told["object_id"]) == ("fail", "p")
     assert "braked" not in told["reason"]
     (row,) = forced(crashing(hand, by=3.0))

@@ -53,17 +53,17 @@ class Meeting(NamedTuple):
     def heading(self) -> float:
         return math.radians(self.degrees)
 
-    def other(self, t: np.ndarray) -> np.ndarray:
+    def other_centres(self, t: np.ndarray) -> np.ndarray:
         """Return where its centre is at each time: (n, 2)."""
         s = self.other_v * (t - 20 - self.delay)
         return np.stack([s * math.cos(self.heading), s * math.sin(self.heading)], axis=1)
 
-    def ego(self, t: np.ndarray) -> np.ndarray:
+    def ego_centres(self, t: np.ndarray) -> np.ndarray:
         return np.stack([self.ego_v * (t - 20), 0 * t], axis=1)
 
     def drive(self, drive_id: str) -> Drive:
         t = times(40)
-        x, y = self.other(t).T
+        x, y = self.other_centres(t).T
         v = np.full(t.shape, float(self.other_v))
         other = Actor(
             "other", t, x, y, np.full(t.shape, self.heading), v * math.cos(self.heading), v * math.sin(self.heading),
@@ -90,7 +90,7 @@ def ground(swept: np.ndarray) -> shapely.Geometry:
     return hull
 
 
-meetings = st.builds(
+MEETINGS = st.builds(
     lambda degrees, ego_v, other_v, delay, size: Meeting(degrees, ego_v, other_v, delay, *size),
     st.one_of(st.integers(25, 155), st.integers(-155, -25)),
     st.integers(4, 20),
@@ -102,27 +102,29 @@ meetings = st.builds(
 
 @pytest.mark.slow
 @settings(max_examples=3)
-@given(st.lists(meetings, min_size=14, max_size=14))
+@given(st.lists(MEETINGS, min_size=14, max_size=14))
 @example([Meeting(90, 10, 10, 0.0, 4.8, 1.8)])
 @example([Meeting(27, 20, 1, 0.0, 0.6, 0.6)])  # the ego goes 2 m a sample, over a box of 0.6 m
-def test_the_times_are_those_of_the_swept_polygons(found: list[Meeting]) -> None:
+def test_the_times_are_those_of_the_swept_polygons(meetings: list[Meeting]) -> None:
     """Entry and exit by shapely: first and last moment that a box touches the ground that the other's covers; whoever is the ego.
 
     Each meeting is a drive of its own, all derived at once.
     """
-    con = derived(*(each.drive(f"{no:02}") for no, each in enumerate(found)), tables=["conflict"])
+    con = derived(*(each.drive(f"{no:02}") for no, each in enumerate(meetings)), tables=["conflict"])
     told = rows(con, "FROM conflict ORDER BY drive_id, ego_id")
     assert [(row["drive_id"], row["ego_id"]) for row in told] == [
-        (f"{no:02}", who) for no in range(len(found)) for who in ("ego", "other")
+        (f"{no:02}", who) for no in range(len(meetings)) for who in ("ego", "other")
     ]
-    for each, row, turned in zip(found, told[::2], told[1::2], strict=True):
+    for each, row, turned in zip(meetings, told[::2], told[1::2], strict=True):
         as_swept(each, row)
         assert mirrored(row) == same(turned), each
 
 
-def touching(each: Meeting, place: Callable[[np.ndarray], np.ndarray], on: shapely.Geometry) -> tuple[float, float]:
+def touching(meeting: Meeting, place: Callable[[np.ndarray], np.ndarray], on: shapely.Geometry) -> tuple[float, float]:
     """Return the first and the last moment that this box touches that ground, to a millisecond."""
-    heading, length, width = (0.0, 4.8, 1.8) if place == each.ego else (each.heading, each.length, each.width)
+    heading, length, width = (
+        (0.0, 4.8, 1.8) if place == meeting.ego_centres else (meeting.heading, meeting.length, meeting.width)
+    )
 
     def touches(t: np.ndarray) -> np.ndarray:
         found: np.ndarray = t[shapely.intersects(boxes(place(t), heading, length, width), on)]
@@ -133,18 +135,22 @@ def touching(each: Meeting, place: Callable[[np.ndarray], np.ndarray], on: shape
     return float(touches(coarse[0] + fine)[0]), float(touches(coarse[-1] + fine)[-1])
 
 
-def as_swept(each: Meeting, row: Row) -> None:
+def as_swept(meeting: Meeting, row: Row) -> None:
     """Hold that the conflict has the times of the polygons."""
     ends = np.array([0.0, 40.0])
-    on_ego = touching(each, each.ego, ground(boxes(each.other(ends), each.heading, each.length, each.width)))
-    on_other = touching(each, each.other, ground(boxes(each.ego(ends), 0.0, 4.8, 1.8)))
+    on_ego = touching(
+        meeting,
+        meeting.ego_centres,
+        ground(boxes(meeting.other_centres(ends), meeting.heading, meeting.length, meeting.width)),
+    )
+    on_other = touching(meeting, meeting.other_centres, ground(boxes(meeting.ego_centres(ends), 0.0, 4.8, 1.8)))
     pet = max(on_ego[0], on_other[0]) - min(on_ego[1], on_other[1])
     times_ = [row[f"t_{who}_{end}_ns"] / 1e9 for who in ("ego", "object") for end in ("in", "out")]
     # a sample of 10 Hz at most, and where the ends of two slender boxes barely touch one more of the other's
-    tolerance = 0.13 + 0.1 * max(each.ego_v / each.other_v, each.other_v / each.ego_v)
+    tolerance = 0.13 + 0.1 * max(meeting.ego_v / meeting.other_v, meeting.other_v / meeting.ego_v)
     if max(on_ego[1], on_other[1]) - min(on_ego[0], on_other[0]) < 10:  # pairs more than ten seconds apart are left out
-        assert times_ == pytest.approx([*on_ego, *on_other], abs=tolerance), each
-    assert row["pet_s"] == pytest.approx(pet, abs=0.0025), each  # the polygons' moments are whole milliseconds
+        assert times_ == pytest.approx([*on_ego, *on_other], abs=tolerance), meeting
+    assert row["pet_s"] == pytest.approx(pet, abs=0.0025), meeting  # the polygons' moments are whole milliseconds
     assert row["pet_at_most"] is False
-    assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), each
-    assert row["angle_rad"] == pytest.approx(each.heading), each
+    assert row["ego_first"] == (row["t_ego_in_ns"] <= row["t_object_in_ns"]), meeting
+    assert row["angle_rad"] == pytest.approx(meeting.heading), meeting

@@ -20,13 +20,13 @@ X = -200 + 100  # the crossing begins here and is 3 m wide
 
 def zebra(hand: str) -> Road:
     """Return the way from west to east with a crossing at s = 100 of road 1."""
-    return cross(hand, (), (("1", crosswalk("x", 100.0, said="zebra")),))["we"]
+    return cross(hand, (), (("1", crosswalk("x", 100.0, label="zebra")),))["we"]
 
 
 def going(way: Road) -> Actor:
     """The front is at s0 + 2.4 + 8 t: on the crossing at 9.7 s, the rear past it at 10.675 s."""
     t = times(14.0)
-    return moving("ego", way, t, 20.0 + 8.0 * t, way.own)
+    return moving("ego", way, t, 20.0 + 8.0 * t, way.ego_d)
 
 
 def walker(name: str, t: np.ndarray, y: np.ndarray) -> Actor:
@@ -35,8 +35,8 @@ def walker(name: str, t: np.ndarray, y: np.ndarray) -> Actor:
     return Actor(name, t, np.full(t.shape, X + 1.5), y, yaw, 0 * t, vy, 0.5, 0.5, "pedestrian")
 
 
-def passages(told: Drive) -> list[Row]:
-    con = derived(told, tables=["crossing_passage"])
+def passages(scene: Drive) -> list[Row]:
+    con = derived(scene, tables=["crossing_passage"])
     return rows(con, "FROM crossing_passage ORDER BY drive_id, ego_id, occurrence")
 
 
@@ -58,7 +58,7 @@ def test_somebody_on_the_egos_half(hand: str, half: int, since: float, on: bool)
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
 @pytest.mark.parametrize(
-    ("out", "v", "comes", "known"),
+    ("out", "v", "comes", "is_known"),
     [
         (-1.0, 1.2, True, True),  # a metre beyond the middle as the ego's front comes, and on to its half
         (-1.0, -1.2, False, True),  # the same, but from the ego's half
@@ -67,9 +67,9 @@ def test_somebody_on_the_egos_half(hand: str, half: int, since: float, on: bool)
         (-4.5, 1.2, False, True),  # still beyond the other half
     ],
 )
-def test_somebody_on_the_other_half(hand: str, out: float, v: float, comes: bool, known: bool) -> None:
+def test_somebody_on_the_other_half(hand: str, out: float, v: float, comes: bool, is_known: bool) -> None:
     """Walks so that it is `out` metres on the ego's side of the middle at 9.7 s, towards that side at `v`."""
     way = zebra(hand)
     t = times(14)
     (row,) = passages(drive([going(way), walker("w", t, SIDE[hand] * (out + v * (t - 9.7)))], way.environment))
-    assert (row["coming_id"], row["coming_known"]) == ("w" if comes else None, known)
+    assert (row["coming_id"], row["coming_known"]) == ("w" if comes else None, is_known)

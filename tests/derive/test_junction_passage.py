@@ -20,7 +20,7 @@ LENGTH = {"right": TURN, "straight": 2 * R, "left": TURN}
 def going(way: Road) -> Actor:
     """Drive in the way's own lane at 8 m/s; its centre enters the junction at s = 185."""
     t = times(18.0)
-    return moving("ego", way, t, 120.0 + 8.0 * t, way.own)
+    return moving("ego", way, t, 120.0 + 8.0 * t, way.ego_d)
 
 
 def passages(*actors: Actor, way: Road) -> list[Row]:

@@ -14,13 +14,13 @@ from tests.scenes import (
     Road,
     derived,
     drive,
-    judged,
     moving,
     road,
     rows,
     standing,
     swing,
     times,
+    verdict_rows,
 )
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -28,7 +28,7 @@ HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 
 def beside(way: Road) -> list[dict[str, Any]]:
     con = derived(
-        drive([moving("ego", way, times(1.0), 10 * times(1.0), way.own)], way.environment), tables=["lane_beside"]
+        drive([moving("ego", way, times(1.0), 10 * times(1.0), way.ego_d)], way.environment), tables=["lane_beside"]
     )
     return rows(con, "FROM lane_beside ORDER BY lanelet_id, side, s_start_m")
 
@@ -59,14 +59,14 @@ def test_an_overtake_on_such_a_map_is_one_in_an_opposing_lane(hand: str) -> None
         t = times(25.0)
         s = 50 + 12 * t
         ego = moving("ego", way, t, s, swing(way, s, 100, 220))
-        vbp = standing("vbp", way, t, 160, way.own)
-        ov = moving("ov", way, t, 560 - 8 * t, way.other)
+        vbp = standing("vbp", way, t, 160, way.ego_d)
+        ov = moving("ov", way, t, 560 - 8 * t, way.oncoming_d)
         con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake", "registration"])
         (found,) = rows(con, "FROM overtake")
         assert (found["opposing"], found["status"], found["ov_id"]) == (True, "completed", "ov")
         (fits,) = rows(con, "FROM registration")
         assert fits["ok"]
-        of = judged(
+        of = verdict_rows(
             [drive([ego, vbp, ov], way.environment)], rules=["ukhc.r162.safe-distance-ahead", "ukhc.overtake-zone"]
         )
         verdicts.append([(r["rule_id"], r["verdict"], r["observed"]) for r in of])
@@ -81,7 +81,7 @@ def test_where_only_the_two_directions_go_on_there_is_no_junction(hand: str) -> 
     way = jointed(hand)
     t = times(33.0)
     s = 5 + 12 * t
-    ego, vbp = moving("ego", way, t, s, swing(way, s, 100, 195)), standing("vbp", way, t, 150, way.own)
+    ego, vbp = moving("ego", way, t, s, swing(way, s, 100, 195)), standing("vbp", way, t, 150, way.ego_d)
     con = derived(drive([ego, vbp], way.environment), tables=["junction_passage", "overtake_place", "_road_half"])
     halves = {(r["road_id"], r["of_road_id"], r["turned"]) for r in rows(con, "FROM _road_half")}
     assert halves == {("5", "1", True), ("4", "2", True)}

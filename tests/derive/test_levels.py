@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.derive.bridge_scenes import bridge, lifted
-from tests.scenes import derived, drive, judged, moving, rows, standing, times
+from tests.scenes import derived, drive, moving, rows, standing, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -21,17 +21,17 @@ def crossing(hand: str, rise_m: float | None = None) -> Drive:
     """Return the ego on the lower road at 15 m/s and a car that crosses over it in the very moment, 300 m on."""
     low, high = bridge(hand, rise_m)
     t = times(12.0)
-    ego = moving("ego", low, t, 300 - 15 * (6.0 - t), low.own)
-    over = moving("over", high, t, 200 + 15 * (t - 6.0), high.own)
+    ego = moving("ego", low, t, 300 - 15 * (6.0 - t), low.ego_d)
+    over = moving("over", high, t, 200 + 15 * (t - 6.0), high.ego_d)
     return drive([ego, over], low.environment)
 
 
-def said(scene: Drive, *rules: str) -> list[Row]:
-    return judged([scene], rules=rules)
+def rows_of(scene: Drive, *rules: str) -> list[Row]:
+    return verdict_rows([scene], rules=rules)
 
 
 def verdicts(scene: Drive, *rules: str) -> set[str]:
-    return {row["verdict"] for row in said(scene, *rules)}
+    return {row["verdict"] for row in rows_of(scene, *rules)}
 
 
 @pytest.mark.ci
@@ -65,14 +65,14 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
     """The law: heights taken away, no pass appears; nobody is taken for one who is not there."""
     low, high = bridge(hand)
     t = times(12.0)
-    ego = moving("ego", low, t, 210 + 15 * t, low.own)
+    ego = moving("ego", low, t, 210 + 15 * t, low.ego_d)
     others = [
-        moving("over", high, t, 110 + 15 * t, high.own),
-        moving("back", high, t, 320 - 15 * t, high.other),
-        moving("lead", low, t, 260 + 14 * t, low.own),
-        moving("met", low, t, 580 - 15 * t, low.other),
-        standing("stands", high, t, 200 + low.own, high.own),
-        standing("beside", high, t, 200 - high.own, high.own),
+        moving("over", high, t, 110 + 15 * t, high.ego_d),
+        moving("back", high, t, 320 - 15 * t, high.oncoming_d),
+        moving("lead", low, t, 260 + 14 * t, low.ego_d),
+        moving("met", low, t, 580 - 15 * t, low.oncoming_d),
+        standing("stands", high, t, 200 + low.ego_d, high.ego_d),
+        standing("beside", high, t, 200 - high.ego_d, high.ego_d),
     ]
     scene = drive([ego, *others], low.environment)
     known = lifted(
@@ -81,9 +81,9 @@ def test_without_heights_nothing_more_passes(hand: str) -> None:
         1e-4,
     )
 
-    def passed(it: Drive) -> dict[tuple[object, ...], list[tuple[int, int]]]:
+    def passed(scene: Drive) -> dict[tuple[object, ...], list[tuple[int, int]]]:
         found: dict[tuple[object, ...], list[tuple[int, int]]] = {}
-        for r in judged([it], rules=["ukhc", "criticality", "rss", "stvo"]):
+        for r in verdict_rows([scene], rules=["ukhc", "criticality", "rss", "stvo"]):
             if r["verdict"] == "pass":
                 of = (r["rule_id"], r["profile"], r["object_id"])
                 found.setdefault(of, []).append((r["t_start_ns"], r["t_end_ns"]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.scenes import Actor, derived, drive, judged, rows, times
+from tests.scenes import Actor, derived, drive, rows, times, verdict_rows
 
 T = times(6.0, period=0.1)
 STILL = np.zeros(len(T))
@@ -25,7 +25,7 @@ def motion(ego: Actor) -> dict[str, np.ndarray]:
 
 
 def fails(ego: Actor) -> set[str]:
-    return {row["rule_id"] for row in judged([drive([ego], None)], rules=COMFORT) if row["verdict"] == "fail"}
+    return {row["rule_id"] for row in verdict_rows([drive([ego], None)], rules=COMFORT) if row["verdict"] == "fail"}
 
 
 def test_the_error_is_three_times_the_mean_standard_error_or_twice_the_greatest_just_here() -> None:

@@ -16,7 +16,7 @@ def test_one_that_turns_in_from_a_side_road_counts_at_the_way_it_makes(hand: str
     ways = tee(hand)
     straight, home = ways["straight"], ways["home"]
     t = times(24.0)
-    ego = moving("ego", straight, t, 20 + 3 * t, straight.own)
+    ego = moving("ego", straight, t, 20 + 3 * t, straight.ego_d)
     offset = -LANE / 2 if hand == "rht" else LANE / 2
     ov = moving("ov", home, t, 20 + 8 * t, offset)
     con = derived(drive([ego, ov], straight.environment), tables=["oncoming"])

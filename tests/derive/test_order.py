@@ -27,26 +27,26 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
         yield con
 
 
-def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
-    made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
+def only(monkeypatch: pytest.MonkeyPatch, tables: Mapping[str, tuple[str, set[str]]]) -> None:
+    made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in tables.items()}
     monkeypatch.setattr(derivations, "library_tables", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
 
 
 CLOCK = """SELECT drive_id, ego_id, max(t_to_ns) AS period_ns, count(*) AS max_gap_ns, min(t_ns) AS t_start_ns, max(t_ns) AS t_end_ns
 FROM step JOIN lost_time USING (drive_id) GROUP BY ALL"""
-LOST = "SELECT drive_id, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns FROM step GROUP BY drive_id"
+LOST_TIME = "SELECT drive_id, min(t_ns) AS t_from_ns, max(t_ns) AS t_to_ns FROM step GROUP BY drive_id"
 
 
-@pytest.mark.parametrize(("most", "n"), [(derive.MOST_STATES_FOR_EMPTINESS_TEST, 0), (-1, 5)])
+@pytest.mark.parametrize(("most_states", "n"), [(derive.MOST_STATES_FOR_EMPTINESS_TEST, 0), (-1, 5)])
 def test_without_an_occasion_a_table_of_few_states_stays_empty(
-    con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, most: int, n: int
+    con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, most_states: int, n: int
 ) -> None:
     """Of many, nothing is run twice: the statement itself finds that there are no rows; here it is made to have some."""
     made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
     monkeypatch.setattr(derivations, "library_tables", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
-    monkeypatch.setattr(derive, "MOST_STATES_FOR_EMPTINESS_TEST", most)
+    monkeypatch.setattr(derive, "MOST_STATES_FOR_EMPTINESS_TEST", most_states)
     derive.derive(con, ["step"], are_map_tables=False, always_needed_tables=())
     assert con.execute("SELECT count(*) FROM step").fetchone() == (n,)
 
@@ -57,7 +57,7 @@ def test_each_runs_after_what_it_reads(
 ) -> None:
     only(
         monkeypatch,
-        {"step": (STEP, set()), "lost_time": (LOST, {"step"}), "clock": (CLOCK, {"step", "lost_time"})},
+        {"step": (STEP, set()), "lost_time": (LOST_TIME, {"step"}), "clock": (CLOCK, {"step", "lost_time"})},
     )
     monkeypatch.setattr(derive, "LEAST_STATES_FOR_ONE_WORKER", large)  # on one connection, or on two
     told: list[str] = []

@@ -22,7 +22,7 @@ MPH = 0.44704
 Row = dict[str, Any]
 
 
-def one(actors: list[Actor], way: Road, table: str) -> list[Row]:
+def table_rows(actors: list[Actor], way: Road, table: str) -> list[Row]:
     return rows(derived(drive(actors, way.environment), tables=[table]), f"FROM {table} ORDER BY ALL")
 
 
@@ -42,7 +42,7 @@ def edge(way: Road, ego: Actor, k: int, *, outer: bool) -> float:
 def test_a_completed_overtake(hand: str) -> None:
     way, actors = scene(hand)
     ego, vbp, ov = actors
-    (found,) = one(actors, way, "overtake")
+    (found,) = table_rows(actors, way, "overtake")
     n = len(ego.t_s)
     out = [edge(way, ego, k, outer=True) for k in range(n)]
     inner = [edge(way, ego, k, outer=False) for k in range(n)]
@@ -121,8 +121,8 @@ def test_safe_distance_ahead_is_the_papers_formula(
     t = times(6.0)
     s = 600 + v_av * t
     ego = moving("ego", way, t, s, swing(way, s, 600 + 2 * v_av, None, change=3 * v_av), length=l_av)
-    vbp = moving("vbp", way, t, 600 + 2 * v_av + 40 + v_vbp * (t - 2), way.own, length=l_vbp)
-    ov = moving("ov", way, t, 1900 - v_ov * t, way.other)
+    vbp = moving("vbp", way, t, 600 + 2 * v_av + 40 + v_vbp * (t - 2), way.ego_d, length=l_vbp)
+    ov = moving("ov", way, t, 1900 - v_ov * t, way.oncoming_d)
     con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake_sda"])
     (o,) = rows(con, "FROM overtake")
     assert (o["l_av_m"], o["l_vbp_m"]) == pytest.approx((l_av, l_vbp))
@@ -217,8 +217,8 @@ def _speeding_up(hand: str, far: float, until_s: float) -> Drive:
     back = float(np.interp(22.0, t, s))
     seen = slice(0, round(until_s / 0.1))
     ego = moving("ego", way, t[seen], s[seen], swing(way, s, out, back)[seen])
-    vbp = moving("vbp", way, t[seen], (out + 20 + 9 * (t - 10))[seen], way.own)
-    ov = moving("ov", way, t[seen], (out + far + 25 * (10 - t))[seen], way.other)
+    vbp = moving("vbp", way, t[seen], (out + 20 + 9 * (t - 10))[seen], way.ego_d)
+    ov = moving("ov", way, t[seen], (out + far + 25 * (10 - t))[seen], way.oncoming_d)
     return drive([ego, vbp, ov], way.environment)
 
 
@@ -229,13 +229,13 @@ def test_of_several_that_come_the_worst_counts(beside: str, hand: str) -> None:
     """A cyclist or a horse that comes slowly is met first: it counts. A car parked at the opposing kerb does not. Neither hides anybody."""
     way, (ego, vbp, ov) = scene(hand)
     t = ego.t_s
-    edge_d = way.other + np.sign(way.other) * 1.2
+    edge_d = way.oncoming_d + np.sign(way.oncoming_d) * 1.2
     others = {
         "parked": standing("near", way, t, 330.0, edge_d, turned=math.pi),
         "cyclist": moving("near", way, t, 400 - 3 * t, edge_d, kind="bicycle", length=1.8, width=0.6),
-        "horse": moving("near", way, t, 400 - 3 * t, way.other, kind="animal", length=2.4, width=0.8),
+        "horse": moving("near", way, t, 400 - 3 * t, way.oncoming_d, kind="animal", length=2.4, width=0.8),
     }
-    near, fast = others[beside], moving("fast", way, t, 560 - 8 * t, way.other)
+    near, fast = others[beside], moving("fast", way, t, 560 - 8 * t, way.oncoming_d)
     told = [drive([ego, vbp, *who], way.environment) for who in ([near], [ov], [fast], [near, ov, fast])]
     sda = [
         {row["profile"]: row for row in rows(derived(d, tables=["overtake_sda"]), "FROM overtake_sda")} for d in told
@@ -259,12 +259,12 @@ def spaces(a: Actor, k: int, reach: float, forward: int) -> tuple[Any, Any]:
     return own, box(min(x, x + forward * reach), y - 0.9, max(x, x + forward * reach), y + 0.9)
 
 
-def depth_of(one: Any, two: Any) -> float:
+def depth_of(polygon: Any, other_polygon: Any) -> float:
     """How far one polygon must be moved to be clear of the other; negative: how far they are apart, along the axis that says most."""
     depths = []
-    for edges in (np.diff(np.array(p.exterior.coords), axis=0) for p in (one, two)):
+    for edges in (np.diff(np.array(p.exterior.coords), axis=0) for p in (polygon, other_polygon)):
         for along in edges / np.linalg.norm(edges, axis=1)[:, None]:
-            a, b = (np.array(p.exterior.coords) @ along for p in (one, two))
+            a, b = (np.array(p.exterior.coords) @ along for p in (polygon, other_polygon))
             depths.append(min(a.max() - b.min(), b.max() - a.min()))
     return float(min(depths))
 
@@ -280,8 +280,8 @@ def test_danger_spaces_on_a_straight_road_are_rectangles() -> None:
     t = times(30.0)
     s = 50 + 12 * t
     ego = moving("ego", way, t, s, swing(way, s, 150, 280))
-    vbp = moving("vbp", way, t, 140 + 4 * t, way.own)
-    ov = moving("ov", way, t, 480 - 9 * t, way.other)  # they meet while the ego is still out
+    vbp = moving("vbp", way, t, 140 + 4 * t, way.ego_d)
+    ov = moving("ov", way, t, 480 - 9 * t, way.oncoming_d)  # they meet while the ego is still out
     con = derived(drive([ego, vbp, ov], way.environment), tables=["overtake_step"])
     found = rows(con, "FROM overtake_step ORDER BY t_ns")
     (o,) = rows(con, "FROM overtake")

@@ -29,21 +29,21 @@ def leads(way: Road | None, *actors: Actor, sensor_range_m: float | None = None)
     return {round(row["t_ns"] / 1e9, 1): row for row in rows(con, "FROM lead")}
 
 
-def ids(found: dict[float, Row]) -> set[str | None]:
-    return {row["object_id"] for row in found.values()}
+def ids(row_by_time: dict[float, Row]) -> set[str | None]:
+    return {row["object_id"] for row in row_by_time.values()}
 
 
 def aside(way: Road, t: Floats, begin: float, lasts: float, share: float = 1.0) -> Floats:
     """Return the offsets of an ego that moves by `share` metres to the middle of the road from `begin` on."""
-    towards = -np.sign(way.own)
+    towards = -np.sign(way.ego_d)
     u = np.clip((t - begin) / lasts, 0.0, 1.0)
-    d: Floats = way.own + towards * share * u * u * (3 - 2 * u)
+    d: Floats = way.ego_d + towards * share * u * u * (3 - 2 * u)
     return d
 
 
 def parked(way: Road, t: Floats) -> Actor:
     """Return a car at the kerb that reaches into the ego's lane, and 0.25 m into the way of an ego in its middle."""
-    return standing("p", way, t, 200.0, np.sign(way.own) * (LANE + 0.9 - 1.1))
+    return standing("p", way, t, 200.0, np.sign(way.ego_d) * (LANE + 0.9 - 1.1))
 
 
 @HANDS
@@ -81,8 +81,8 @@ def test_a_queue_is_followed_until_the_end_of_the_log(hand: str, with_map: bool)
     way = road(hand=hand)
     t = times(14.0)
     s = 100 + np.where(t < 8, 8 * t, 64 + 8 * (np.clip(t, 8, 12) - 8) - (np.clip(t, 8, 12) - 8) ** 2)
-    ego, first = moving("ego", way, t, s, way.own), moving("x", way, t, s + 7.8, way.own)
-    second = moving("y", way, t, s + 15.6, way.own)
+    ego, first = moving("ego", way, t, s, way.ego_d), moving("x", way, t, s + 7.8, way.ego_d)
+    second = moving("y", way, t, s + 15.6, way.ego_d)
     found = leads(way if with_map else None, ego, first, second)
     assert ids(found) == {"x"}
     assert len(found) == len(t)
@@ -97,8 +97,8 @@ def test_in_a_bend_the_lead_is_found_by_the_way_and_who_stands_straight_on_is_no
     way = road(hand=hand, pieces=((60.0, 0.0), (60.0, 1 / 40), (200.0, 0.0)))
     t = times(14.0)
     s = 10 + 8 * t
-    ego, x = moving("ego", way, t, s, way.own), moving("x", way, t, s + 20, way.own)
-    straight_on = standing("p", way, t, 60.0, way.own)
+    ego, x = moving("ego", way, t, s, way.ego_d), moving("x", way, t, s + 20, way.ego_d)
+    straight_on = standing("p", way, t, 60.0, way.ego_d)
     straight_on = replace(straight_on, x=straight_on.x + 35.0)
     found = leads(None, ego, x, straight_on)
     # s is along the road's middle, and the lane is longer or shorter than that

@@ -26,7 +26,9 @@ def outline(x: float, y: float, yaw: float, length: float, width: float) -> Poly
 @pytest.mark.ci
 @settings(max_examples=12, deadline=None)
 @given(st.floats(0, 20), ANGLE, st.lists(BOXES, min_size=40, max_size=40))
-def test_clearance_is_the_distance_between_the_boxes(far: float, yaw: float, others: list[tuple[float, ...]]) -> None:
+def test_clearance_is_the_distance_between_the_boxes(
+    far: float, yaw: float, other_boxes: list[tuple[float, ...]]
+) -> None:
     """Forty boxes around one ego, near and far, apart and into each other."""
     t = np.array([0.0])
     zero = np.zeros(1)
@@ -36,7 +38,7 @@ def test_clearance_is_the_distance_between_the_boxes(far: float, yaw: float, oth
         return Actor(name, t, zero + x, zero + y, zero + heading, zero, zero, length, width)
 
     ego = (far * 100, -far, yaw, 4.8, 1.8)
-    placed = [(x + ego[0], y + ego[1], *rest) for x, y, *rest in others]
+    placed = [(x + ego[0], y + ego[1], *rest) for x, y, *rest in other_boxes]
     actors = [still("ego", ego), *(still(f"{n:02}", o) for n, o in enumerate(placed))]
     con = derived(drive(actors, None), tables=["pair"])
     found = rows(con, "FROM pair ORDER BY object_id")
@@ -68,10 +70,10 @@ def test_distance_along_a_bend_is_not_the_chord(curvature: float) -> None:
     """150 m of bend: bumper to bumper is the arc length of the ego's own lane, less both half lengths."""
     way = road(((50.0, 0.0), (250.0, curvature), (50.0, 0.0)))
     t = times(0.2)
-    ego, other = standing("ego", way, t, 60, way.own), moving("far", way, t, 210 - 5 * t, way.other)
+    ego, other = standing("ego", way, t, 60, way.ego_d), moving("far", way, t, 210 - 5 * t, way.oncoming_d)
     con = derived(drive([ego, other], way.environment), tables=["pair", "oncoming"])
     row = rows(con, "SELECT p.*, e.front_s_m AS ego_front_m FROM pair p JOIN ego_state e USING (t_ns) ORDER BY t_ns")[0]
-    arc = 150 * (1 - way.own * curvature)
+    arc = 150 * (1 - way.ego_d * curvature)
     # a box's ends stick out along the tangent, so the corners' stations are a hair short of the half length
     assert row["rear_s_m"] - row["ego_front_m"] == pytest.approx(arc - 4.8, abs=0.1)
     assert row["d_m"] == pytest.approx(LANE, abs=0.02)

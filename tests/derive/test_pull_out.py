@@ -22,7 +22,7 @@ def astride(way: Road, s: Floats) -> Floats:
     """Return offsets of an ego of 1.8 m that is 0.6 m over the line from 150 m on, within 6 m, and back in its lane 20 m from `BACK` on."""
     moved, held = (np.clip((s - at) / within, 0, 1) for at, within in ((150, 6), (BACK, 20)))
     over = (LANE / 2 - 0.9 + 0.6) * moved * moved * (3 - 2 * moved)
-    offsets: Floats = way.own + way.over * over * (1 - held * held * (3 - 2 * held))
+    offsets: Floats = way.ego_d + way.over * over * (1 - held * held * (3 - 2 * held))
     return offsets
 
 
@@ -37,8 +37,8 @@ def scene(hand: str, tail: float) -> tuple[Road, list[Actor]]:
     way = road(((1200.0, 0.0),), hand)
     s = 50 + 8 * T
     ego = tail_out(way, moving("ego", way, T, s, astride(way, s)), 229, tail)
-    parked = standing("vbp", way, T, PARKED, way.own - 0.6 * way.over)
-    return way, [ego, parked, moving("ov", way, T, 700 - 9 * T, way.other)]
+    parked = standing("vbp", way, T, PARKED, way.ego_d - 0.6 * way.over)
+    return way, [ego, parked, moving("ov", way, T, 700 - 9 * T, way.oncoming_d)]
 
 
 def first_over(way: Road, ego: Actor) -> int:

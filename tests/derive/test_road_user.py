@@ -7,7 +7,7 @@ import pytest
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource
 from tests.formats.opendrive import xodr
-from tests.scenes import LANE, Road, derived, drive, judged, moving, plan, rows, times
+from tests.scenes import LANE, Road, derived, drive, moving, plan, rows, times, verdict_rows
 
 HANDS = pytest.mark.parametrize("hand", ["rht", "lht"])
 T = times(14)
@@ -64,5 +64,5 @@ def test_a_cyclist_on_a_cycle_lane(  # noqa: PLR0917
     assert {(r["cycle_lane"], r["on_carriageway"]) for r in found} == {(cycle_lane, cycle_lane is not None)}
     assert {r["on_strip"] for r in found} == {on_strip}
     assert all(r["clearance_m"] == pytest.approx(1.05, abs=0.01) for r in found)
-    said = {r["rule_id"]: r["verdict"] for r in judged([told], rules=["ukhc.r163.cyclist", "stvo.s5-passing"])}
+    said = {r["rule_id"]: r["verdict"] for r in verdict_rows([told], rules=["ukhc.r163.cyclist", "stvo.s5-passing"])}
     assert said == {"ukhc.r163.cyclist": british, "stvo.s5-passing": german}

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.scenes import LANE, derived, drive, judged, moving, road, rows, standing, times
+from tests.scenes import LANE, derived, drive, moving, road, rows, standing, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -24,7 +24,7 @@ def seen_ahead(way: Road, *, box: bool) -> dict[int, dict[str, Any]]:
     """Return step in tenths -> the row of `_sight` of an ego that drives along a lane; somebody far away is lost at 1 s."""
     t = times(3.0)
     ego = moving("ego", way, t, 10 + 1 * t, -0.5 * LANE)
-    gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).lost(t > 1.05)
+    gone = moving("gone", way, t, 150 + 0 * t, -0.5 * LANE).without_position(t > 1.05)
     # in the lane on the right: inside of a bend to the right
     lorry = standing("lorry", way, t, 62, -1.5 * LANE, length=12.0, width=2.5)
     scene = drive([ego, gone, *([lorry] if box else [])], way.environment, in_sight=True, sensor_range_m=100.0)
@@ -68,9 +68,9 @@ def follows_nobody(*, in_sight: bool) -> Drive:
 
 @pytest.mark.parametrize("rule", AHEAD)
 def test_a_lane_in_plain_view_is_judged(rule: str) -> None:
-    strict = {r["verdict"] for r in judged([follows_nobody(in_sight=False)], rules=[rule])}
+    strict = {r["verdict"] for r in verdict_rows([follows_nobody(in_sight=False)], rules=[rule])}
     assert "unknown" in strict
-    found = judged([follows_nobody(in_sight=True)], rules=[rule])
+    found = verdict_rows([follows_nobody(in_sight=True)], rules=[rule])
     assert {r["verdict"] for r in found} == {"pass"}
     assert {r["assumes"] for r in found} == {"line_of_sight"}
     assert None in {r["object_id"] for r in found}
@@ -84,28 +84,28 @@ def test_the_reason_is_the_objects_own_track() -> None:
         moving(name, LONG, t, s + 15 * t, 0.5 * LANE).keep(t < end)
         for name, s, end in (("one", 101, 3.05), ("two", 106, 5.05))
     )
-    found = judged([drive([ego, one, two], LONG.environment, in_sight=True)], rules=["rss.lateral"])
+    found = verdict_rows([drive([ego, one, two], LONG.environment, in_sight=True)], rules=["rss.lateral"])
     told = {r["object_id"]: r["reason"] for r in found if r["verdict"] == "unknown"}
     assert "the track of object one ends at 3.000 s: record it for longer" in told["one"]
     assert "the track of object two ends at 5.000 s: record it for longer" in told["two"]
 
 
 @pytest.mark.parametrize(
-    ("kind", "speed", "asked"),
+    ("kind", "speed", "advice"),
     [(None, 0.5, "record its class"), ("object", 0.0, "no better recording can decide this")],
 )
-def test_what_is_or_may_be_no_vehicle_in_the_lane_ahead(kind: str | None, speed: float, asked: str) -> None:
+def test_what_is_or_may_be_no_vehicle_in_the_lane_ahead(kind: str | None, speed: float, advice: str) -> None:
     t = times(4.0)
     ego = moving("ego", LONG, t, 100 + 5 * t, -0.5 * LANE)
     ahead = replace(moving("x", LONG, t, 127 + speed * t, -0.5 * LANE), kind=kind, length=0.5, width=0.5)
-    found = judged([drive([ego, ahead], LONG.environment)], rules=["criticality.ttc"])
+    found = verdict_rows([drive([ego, ahead], LONG.environment)], rules=["criticality.ttc"])
     assert [r["verdict"] for r in found] == ["unknown"]
     assert "object x" in found[0]["reason"]
-    assert asked in found[0]["reason"]
+    assert advice in found[0]["reason"]
 
 
 def test_a_rule_about_the_ego_alone_assumes_nothing() -> None:
-    found = judged([follows_nobody(in_sight=True)], rules=["ukhc.r124.speed-limit", "ukhc.no-collision"])
+    found = verdict_rows([follows_nobody(in_sight=True)], rules=["ukhc.r124.speed-limit", "ukhc.no-collision"])
     assert {r["rule_id"]: r["assumes"] for r in found} == {
         "ukhc.r124.speed-limit": None,
         "ukhc.no-collision": "line_of_sight",
@@ -113,7 +113,7 @@ def test_a_rule_about_the_ego_alone_assumes_nothing() -> None:
     everybody = drive(
         [moving("ego", LONG, times(5.0), 100 + 15 * times(5.0), -0.5 * LANE)], LONG.environment, in_sight=True
     )
-    assert {r["assumes"] for r in judged([everybody], rules=["ukhc.no-collision", *AHEAD])} == {None}
+    assert {r["assumes"] for r in verdict_rows([everybody], rules=["ukhc.no-collision", *AHEAD])} == {None}
 
 
 @pytest.mark.slow
@@ -125,14 +125,14 @@ def test_what_is_decided_without_the_assumption_is_decided_alike_with_it(
     t = times(20.0)
     ego = moving("ego", LONG, t, 100 + 12 * t, -0.5 * LANE)
     lead = moving("lead", LONG, t, 200 + 12 * t, -0.5 * LANE)
-    other = moving("x", LONG, t, 104.8 + gap + (12 + faster) * t, lane * LANE).lost(
+    other = moving("x", LONG, t, 104.8 + gap + (12 + faster) * t, lane * LANE).without_position(
         (t > ends_s) & (t < ends_s + hole_s)
     )
     rules = [*AHEAD, "ukhc.r126.thinking-gap", "ukhc.no-collision", "ukhc.r126.stopping-gap"]
     told = []
     for in_sight in (False, True):
         found: dict[str, set[str]] = {}
-        for r in judged([drive([ego, lead, other], LONG.environment, in_sight=in_sight)], rules=rules):
+        for r in verdict_rows([drive([ego, lead, other], LONG.environment, in_sight=in_sight)], rules=rules):
             found.setdefault(r["rule_id"], set()).add(r["verdict"])
         told.append(found)
     strict, seen = told

@@ -35,10 +35,10 @@ def heads_at_line(heads: Heads, hand: str) -> dict[str, Road]:
 def going(way: Road) -> Actor:
     """Return the ego, whose front is at 122.4 + 8 t and over the line at 7.2 s; it has turned at 11 s."""
     t = times(14.0)
-    return moving("ego", way, t, 120.0 + 8.0 * t, way.own)
+    return moving("ego", way, t, 120.0 + 8.0 * t, way.ego_d)
 
 
-def told(way: Road, heads: Heads) -> Drive:
+def scene_with_heads(way: Road, heads: Heads) -> Drive:
     made = drive([going(way)], way.environment)
     for name, (_, state) in heads.items():
         if state:
@@ -46,8 +46,8 @@ def told(way: Road, heads: Heads) -> Drive:
     return made
 
 
-def crossed(made: Drive) -> Row:
-    con = derived(made, tables=["stop_line_crossing"])
+def crossed(scene: Drive) -> Row:
+    con = derived(scene, tables=["stop_line_crossing"])
     (row,) = rows(con, "FROM stop_line_crossing")
     assert row["control"] == "traffic_light"
     return row
@@ -78,4 +78,4 @@ LINKS: Heads = {"l": (LEFT, "red"), "r": (RIGHT, "amber"), "s": (STRAIGHT, "gree
 )
 def test_each_turn_by_its_own_head(hand: str, heads: Heads, way: str, state: str) -> None:
     road = heads_at_line(heads, hand)[way]
-    assert crossed(told(road, heads))["state"] == state
+    assert crossed(scene_with_heads(road, heads))["state"] == state

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tests.derive.junction_scenes import cross, crosswalk
-from tests.derive.trailer_scene import drawn
-from tests.scenes import Actor, Road, derived, drive, judged, moving, road, rows, standing, times
+from tests.derive.trailer_scene import trailer_behind
+from tests.scenes import Actor, Road, derived, drive, moving, road, rows, standing, times, verdict_rows
 
 if TYPE_CHECKING:
     import duckdb
@@ -39,8 +39,8 @@ def test_the_trailer_is_the_ego(hand: str, kind: str | None, hitch: float, lengt
     """Round a bend of 40 m: behind a drawbar, and over a fifth wheel, where the boxes overlap."""
     way = road(BEND, hand)
     t = times(20.0)
-    ego = moving("ego", way, t, 40 + 10 * t, way.own, length=6.0, width=2.4)
-    scene = drive([ego, drawn("t", ego, hitch, length, kind=kind)], way.environment)
+    ego = moving("ego", way, t, 40 + 10 * t, way.ego_d, length=6.0, width=2.4)
+    scene = drive([ego, trailer_behind("t", ego, hitch, length, kind=kind)], way.environment)
     touches = hitch < 0
     if kind == "trailer" or touches:
         assert parts(scene) == {"t": "trailer"}
@@ -50,7 +50,7 @@ def test_the_trailer_is_the_ego(hand: str, kind: str | None, hitch: float, lengt
         for row in rows(con, "FROM ego_state"):
             assert row["combination_m"] == pytest.approx(6 + length + 2 * hitch, abs=0.4)
             assert row["front_s_m"] - row["rear_s_m"] == pytest.approx(row["combination_m"], abs=0.5)
-        assert {row["verdict"] for row in judged([scene], rules=[CRASH])} == {"not_applicable"}
+        assert {row["verdict"] for row in verdict_rows([scene], rules=[CRASH])} == {"not_applicable"}
     else:
         assert parts(scene) == {}
 
@@ -61,20 +61,20 @@ def test_the_trailer_s_box_is_the_ego_s(hand: str) -> None:
     """Who stands in its way is struck though the ego is past, and the ego's rear is the trailer's."""
     way = road(((600.0, 0.0),), hand)
     t = times(10.0)
-    ego = moving("ego", way, t, 100 + 10 * t, way.own)
-    behind = moving("behind", way, t, 60 + 10 * t, way.own)
-    wide = replace(drawn("t", ego, kind="trailer"), width=3.0)
-    beside = standing("beside", way, t, 150, way.own + 2.2, width=1.6)
+    ego = moving("ego", way, t, 100 + 10 * t, way.ego_d)
+    behind = moving("behind", way, t, 60 + 10 * t, way.ego_d)
+    wide = replace(trailer_behind("t", ego, kind="trailer"), width=3.0)
+    beside = standing("beside", way, t, 150, way.ego_d + 2.2, width=1.6)
     scene = drive([ego, wide, behind, beside], way.environment)
     con = derived(scene, tables=["pair", "ego_state"])
     assert there(con) == {"behind", "beside"}
     gap = "SELECT e.rear_s_m - p.front_s_m AS gap_m FROM pair p JOIN ego_state e USING (drive_id, ego_id, t_ns)"
     assert {round(r["gap_m"], 1) for r in rows(con, f"{gap} WHERE object_id = 'behind'")} == {28.2}
-    found = {row["object_id"]: row["verdict"] for row in judged([scene], rules=[CRASH])}
+    found = {row["object_id"]: row["verdict"] for row in verdict_rows([scene], rules=[CRASH])}
     assert found == {"behind": "pass", "beside": "fail"}
     # while the trailer is not placed, nobody knows
-    lost = drive([ego, wide.lost((t > 4) & (t < 6)), behind, beside], way.environment)
-    found = {row["object_id"]: row["verdict"] for row in judged([lost], rules=[CRASH])}
+    lost = drive([ego, wide.without_position((t > 4) & (t < 6)), behind, beside], way.environment)
+    found = {row["object_id"]: row["verdict"] for row in verdict_rows([lost], rules=[CRASH])}
     assert found["behind"] == "unknown"
 
 
@@ -84,10 +84,10 @@ def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) 
     """A crossing at 100 m, 3 m wide, and a junction from 185 to 215 m: the ego's rear is 2.4 m behind its middle, the trailer's 9.4 m."""
     way = cross(hand, (), (("1", crosswalk("walk", 100.0)),))["we"]
     t = times(24.0)
-    ego = moving("ego", way, t, 60 + 8 * t, way.own)
-    trailer = drawn("t", ego, kind="trailer")
+    ego = moving("ego", way, t, 60 + 8 * t, way.ego_d)
+    trailer = trailer_behind("t", ego, kind="trailer")
     if unseen:
-        trailer = trailer.lost((t > 5) & (t < 20.5))
+        trailer = trailer.without_position((t > 5) & (t < 20.5))
     for parts_, reach in (([ego], 2.4), ([ego, trailer], 9.4)):
         con = derived(drive(parts_, way.environment), tables=["crossing_passage", "junction_passage"])
         (over,) = rows(con, "FROM crossing_passage")
@@ -103,7 +103,7 @@ def test_its_rear_is_past_a_mark_when_the_trailer_s_is(hand: str, unseen: bool) 
 
 def renamed(way: Road, at: NDArray[np.float64], early: NDArray[np.bool_], late: NDArray[np.bool_]) -> list[Actor]:
     """Return one vehicle under two ids: in the samples of the one mask, and in those of the other."""
-    whole = moving("ego", way, at, 50 + 18 * at, way.own)
+    whole = moving("ego", way, at, 50 + 18 * at, way.ego_d)
     return [whole.keep(early), replace(whole.keep(late), actor_id="next")]
 
 
@@ -116,11 +116,11 @@ def test_the_ego_under_another_id_is_no_collision(hand: str, ego: str, overlap: 
     way = road(((600.0, 0.0),), hand)
     t = times(12.0)
     k = np.arange(len(t))
-    both = [*renamed(way, t, k < 60, k >= 60 - overlap), moving("other", way, t, 520 - 15 * t, way.other)]
+    both = [*renamed(way, t, k < 60, k >= 60 - overlap), moving("other", way, t, 520 - 15 * t, way.oncoming_d)]
     scene = drive(both, way.environment, egos=[ego])
     assert parts(scene) == {("next" if ego == "ego" else "ego"): "successor" if ego == "ego" else "predecessor"}
     con = derived(scene, tables=["pair", "conflict", "lost_object", "unplaced"])
     assert there(con) == {"other"}
     assert not rows(con, "FROM conflict")
-    assert {row["object_id"] for row in judged([scene], rules=[CRASH])} <= {"other"}
-    assert "fail" not in {row["verdict"] for row in judged([scene], rules=[CRASH])}
+    assert {row["object_id"] for row in verdict_rows([scene], rules=[CRASH])} <= {"other"}
+    assert "fail" not in {row["verdict"] for row in verdict_rows([scene], rules=[CRASH])}

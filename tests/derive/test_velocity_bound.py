@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.engine.batch import Drive
-from tests.scenes import drive, judged, moving, road, times
+from tests.scenes import drive, moving, road, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
@@ -17,21 +17,21 @@ T = times(4.0)
 RULES = ("criticality.ttc", "criticality.drac", "criticality.ttb")
 
 
-def doubted(told: Drive, actor: str) -> Drive:
+def doubted(scene: Drive, actor: str) -> Drive:
     """Return the drive with a doubt about an actor's velocity from 1.45 s to 2.55 s."""
-    table = told.trace.tables["doubt"]
-    whom = {"drive_id": told.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": "common_jolt"}
+    table = scene.trace.tables["doubt"]
+    whom = {"drive_id": scene.trace.drive_id, "actor_id": actor, "quantity": "velocity", "code": "common_jolt"}
     row = {**whom, "t_from_ns": 1_450_000_000, "t_to_ns": 2_550_000_000}
-    told.trace.tables["doubt"] = pa.concat_tables([table, pa.Table.from_pylist([row], schema=table.schema)])
-    return told
+    scene.trace.tables["doubt"] = pa.concat_tables([table, pa.Table.from_pylist([row], schema=table.schema)])
+    return scene
 
 
 def queue(hand: str, gap: float, speed: float) -> Drive:
     """Return an ego at 5 m/s behind a car whose velocity is recorded as half of it for one sample."""
     way = road(hand=hand)
-    lead = moving("x", way, T, 104.8 + gap + speed * T, way.own)
+    lead = moving("x", way, T, 104.8 + gap + speed * T, way.ego_d)
     lead.vx[20] *= 0.5
-    return drive([moving("ego", way, T, 100 + 5 * T, way.own), lead], way.environment)
+    return drive([moving("ego", way, T, 100 + 5 * T, way.ego_d), lead], way.environment)
 
 
 @pytest.mark.parametrize("hand", ["rht", "lht"])
@@ -42,5 +42,5 @@ def queue(hand: str, gap: float, speed: float) -> Drive:
 def test_a_jolt_decides_only_where_its_bounds_do(hand: str, gap: float, speed: float, verdict: str) -> None:
     """Behind a car at the same speed, near or far, and so near to a slow one that it is hit before the jolt is over."""
     told = queue(hand, gap, speed)
-    found = judged([doubted(told, "x")], rules=RULES)
+    found = verdict_rows([doubted(told, "x")], rules=RULES)
     assert {row["rule_id"]: row["verdict"] for row in found if row["object_id"] == "x"} == dict.fromkeys(RULES, verdict)

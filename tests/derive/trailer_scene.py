@@ -10,7 +10,7 @@ import numpy as np
 from tests.scenes import Actor
 
 
-def drawn(actor_id: str, tractor: Actor, hitch_m: float = 0.5, length: float = 6.0, **more: Any) -> Actor:
+def trailer_behind(actor_id: str, tractor: Actor, hitch_m: float = 0.5, length: float = 6.0, **more: Any) -> Actor:
     """Return a trailer: its middle rolls after an eye `hitch_m` behind the tractor's rear and as far before its own front."""
     reach = (tractor.length or 0.0) / 2 + hitch_m
     hx, hy = tractor.x - reach * np.cos(tractor.yaw), tractor.y - reach * np.sin(tractor.yaw)

@@ -18,7 +18,7 @@ T = times(10.0)
 
 
 def read(*actors: Actor, egos: tuple[str, ...] = ("ego",)) -> Trace:
-    ego = moving("ego", WAY, T, 100 + 10 * T, WAY.own)
+    ego = moving("ego", WAY, T, 100 + 10 * T, WAY.ego_d)
     return ingested(drive([ego, *actors], WAY.environment, egos=egos)).trace
 
 

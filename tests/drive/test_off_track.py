@@ -12,7 +12,7 @@ from drivelint.drive import outliers
 from drivelint.drive.order import steps
 from drivelint.drive.trace import States
 from tests.ingested import ingested
-from tests.scenes import Actor, drive, judged, moving, road, times
+from tests.scenes import Actor, drive, moving, road, times, verdict_rows
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
@@ -38,8 +38,8 @@ def scene(kind: str, hz: float, actor_id: str, *, with_velocity: bool, noise_m: 
     t = times(12.0, period=1.0 / hz)
     k, i = len(t) // 2, np.arange(len(t))
     pair = {
-        "ego": moving("ego", WAY, t, 100 + SPEED * t, WAY.own),
-        "x": moving("x", WAY, t, 101 + SPEED * t, WAY.own - 2.2),
+        "ego": moving("ego", WAY, t, 100 + SPEED * t, WAY.ego_d),
+        "x": moving("x", WAY, t, 101 + SPEED * t, WAY.ego_d - 2.2),
     }
     if not with_velocity:
         nothing = np.full(len(t), np.nan)
@@ -132,10 +132,10 @@ def test_noise_hides_no_back_step_and_is_none(kind: str) -> None:
 
 def test_noise_and_hard_manoeuvres_are_on_their_track() -> None:
     t, rng = times(30.0), np.random.default_rng(5)
-    actors = [moving("ego", WAY, t, 100 + SPEED * t, WAY.own)]
+    actors = [moving("ego", WAY, t, 100 + SPEED * t, WAY.ego_d)]
     for number, sigma in enumerate((0.0, 0.02, 0.1, 0.2)):
         v = np.clip(15 + np.cumsum(np.repeat(rng.uniform(-9, 9, 31), 10)[: len(t)]) * 0.1, 0.0, 25.0)
-        actor = moving(f"a{number}", WAY, t, 200 + np.cumsum(v) * 0.1, WAY.own + np.sin(t))
+        actor = moving(f"a{number}", WAY, t, 200 + np.cumsum(v) * 0.1, WAY.ego_d + np.sin(t))
         actors.append(
             replace(actor, x=actor.x + rng.normal(0, sigma, len(t)), y=actor.y + rng.normal(0, sigma, len(t)))
         )
@@ -155,7 +155,7 @@ def test_an_impact_is_no_back_step(with_velocity: bool) -> None:
     for speeds in ((10.0, 2.0, 2.0), (0.0, 5.0, 3.0), (10.0, -2.0, 0.0), (0.4, 4.6, 2.6)):
         v = np.select([t < 4.95, t < 5.05], speeds[:2], speeds[2])
         x = 200 + np.r_[0.0, np.cumsum(v[:-1]) * 0.1]
-        struck: Actor = replace(moving("ego", WAY, t, x, WAY.own), vx=v if with_velocity else np.full(len(t), np.nan))
+        struck: Actor = replace(moving("ego", WAY, t, x, WAY.ego_d), vx=v if with_velocity else np.full(len(t), np.nan))
         struck = replace(struck, vy=struck.vx * 0.0, yaw=np.zeros(len(t)))
         trace = ingested(drive([struck], WAY.environment)).trace
         assert all(row["x_m"] is not None for row in states(trace, "ego"))
@@ -174,7 +174,7 @@ def test_no_finding_comes_of_a_jump() -> None:
     drives += [
         scene(kind, 10, actor_id, with_velocity=True)[0] for kind in ("side0.5", "jump20") for actor_id in ("ego", "x")
     ]
-    found = judged(drives, rules=RULES)
+    found = verdict_rows(drives, rules=RULES)
     assert not [(row["drive_id"], row["rule_id"], row["reason"]) for row in found if row["verdict"] == "fail"]
     # and each says why it does not know
     unknown = {

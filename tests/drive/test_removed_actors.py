@@ -26,7 +26,7 @@ def put(actor: Actor, since: float, x: float = 0.0, y: float = 500.0) -> Actor:
 
 
 def read(*actors: Actor, egos: tuple[str, ...] = ("ego",)) -> Trace:
-    ego = moving("ego", WAY, T, 100 + 10 * T, WAY.own)
+    ego = moving("ego", WAY, T, 100 + 10 * T, WAY.ego_d)
     return ingested(drive([ego, *actors], WAY.environment, egos=egos)).trace
 
 
@@ -36,7 +36,7 @@ def last_seen(trace: Trace) -> dict[str, float]:
 
 
 def walker(name: str, s: float) -> Actor:
-    return moving(name, WAY, T, s + 1.4 * T, WAY.own + 6, kind="pedestrian", length=0.5, width=0.6)
+    return moving(name, WAY, T, s + 1.4 * T, WAY.ego_d + 6, kind="pedestrian", length=0.5, width=0.6)
 
 
 def test_tracks_end_where_their_actors_are_put_upon_each_other() -> None:

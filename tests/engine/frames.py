@@ -82,5 +82,5 @@ def in_frame(reference: str, offset: tuple[float, float, float] = WHOLE, place: 
     return replace(with_numbers(plain(), number), geo_reference=reference, geo_offset=offset)
 
 
-def judged(trace: Trace, road: Path, offset: tuple[float, float] | None = None) -> Drive:
+def drive_on_map(trace: Trace, road: Path, offset: tuple[float, float] | None = None) -> Drive:
     return drive_with_map(trace, MapLibrary(DriveInput(map=road, map_offset=offset)))

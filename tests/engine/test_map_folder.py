@@ -22,7 +22,7 @@ def put(folder: Path, name: str, x: float = 0.0) -> None:
     path.write_text(scenario(lanelet(1, 0.0, x=x), benchmark="DEU_T-1"))
 
 
-def found(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
+def map_name(folder: Path, log: str = "logs/drive.mcap", x: float = 5.0, embedded: bytes | None = None) -> str:
     library = MapLibrary(DriveInput(map_dir=folder))
     environment, _ = library.find(log_of(states(x), Path(log), embedded=embedded))
     assert environment is not None
@@ -33,26 +33,26 @@ def test_the_manifest_comes_first(tmp_path: Path) -> None:
     put(tmp_path, "drive.xml")
     put(tmp_path, "deep/other.xml")
     (tmp_path / "maps.csv").write_text("log, map\nx*.mcap, drive.xml\ndri*.mcap, deep/other.xml\n")
-    assert found(tmp_path) == "other"
+    assert map_name(tmp_path) == "other"
 
 
 def test_then_the_logs_name_and_its_folders(tmp_path: Path) -> None:
     put(tmp_path, "drive.xml")
     put(tmp_path, "logs.xml")
-    assert found(tmp_path) == "drive"
-    assert found(tmp_path, "logs/b.mcap") == "logs"
+    assert map_name(tmp_path) == "drive"
+    assert map_name(tmp_path, "logs/b.mcap") == "logs"
 
 
 def test_then_the_logs_own_map(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
     embedded = scenario(lanelet(1, 0.0), benchmark="GBR_T-1").encode()
-    assert found(tmp_path, embedded=embedded) == "embedded"
+    assert map_name(tmp_path, embedded=embedded) == "embedded"
 
 
 def test_then_the_only_one_of_the_place(tmp_path: Path) -> None:
     put(tmp_path, "a.xml", x=0.0)
     put(tmp_path, "b.xml", x=1000.0)
-    assert (found(tmp_path, x=5.0), found(tmp_path, x=1005.0)) == ("a", "b")
+    assert (map_name(tmp_path, x=5.0), map_name(tmp_path, x=1005.0)) == ("a", "b")
 
 
 def test_without_a_map_of_the_place_a_drive_has_none_and_says_so(tmp_path: Path) -> None:
@@ -72,7 +72,7 @@ def test_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> No
     with pytest.raises(
         MapError, match=r"a\.xml, b\.xml are all of the place of drive\.mcap: name its map in .*maps\.csv"
     ):
-        found(tmp_path, x=12.0)
+        map_name(tmp_path, x=12.0)
 
 
 def test_maps_of_argoverse_are_searched_and_other_json_is_not(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_maps_of_argoverse_are_searched_and_other_json_is_not(tmp_path: Path) ->
     (tmp_path / "scene.json").write_text('{"objects": []}')
     put(tmp_path, "a.xml", x=1000.0)
     assert MapFolder(tmp_path).sources()[1].name == "log_map_archive_s.json"
-    assert [found(tmp_path, x=x) for x in (5.0, 1005.0)] == ["log_map_archive_s", "a"]
+    assert [map_name(tmp_path, x=x) for x in (5.0, 1005.0)] == ["log_map_archive_s", "a"]
 
 
 def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def checked(folder: Path, names: tuple[str, ...], out: Path | None = None, **more: Any) -> list[Row]:
+def check_findings(folder: Path, names: tuple[str, ...], out: Path | None = None, **more: Any) -> list[Row]:
     more = {"robustness": True} | more
     traces = tuple(str(folder / f"{name}.mcap") for name in names)
     result = run.check(
@@ -54,16 +54,20 @@ def checked(folder: Path, names: tuple[str, ...], out: Path | None = None, **mor
 
 
 @pytest.fixture(scope="module")
-def judged(logs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Row]]:
+def folder_and_findings(logs: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Row]]:
     out = tmp_path_factory.mktemp("judged")
-    return out, checked(logs, ("collision", "near-miss-25mph"), out, keep_db=True)
+    return out, check_findings(logs, ("collision", "near-miss-25mph"), out, keep_db=True)
 
 
 @pytest.mark.slow
 def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_about_half(
-    judged: tuple[Path, list[Row]],
+    folder_and_findings: tuple[Path, list[Row]],
 ) -> None:
-    told = {(row["rule_id"], row["profile"]): row for row in judged[1] if row["drive_id"].startswith("collision")}
+    told = {
+        (row["rule_id"], row["profile"]): row
+        for row in folder_and_findings[1]
+        if row["drive_id"].startswith("collision")
+    }
     assert told
     far = [row for row in told.values() if row["rule_id"] != "ukhc.no-collision"]
     assert len(far) == 4
@@ -76,10 +80,16 @@ def test_a_margin_far_beyond_the_errors_stays_and_one_of_two_centimetres_in_abou
 
 
 @pytest.mark.slow
-def test_by_default_the_gravest_finding_of_a_rule_is_judged(logs: Path, judged: tuple[Path, list[Row]]) -> None:
+def test_by_default_the_gravest_finding_of_a_rule_is_judged(
+    logs: Path, folder_and_findings: tuple[Path, list[Row]]
+) -> None:
     """Two findings of one rule at one time, by two profiles; what is only possible is so after fewer copies, and nothing else differs."""
-    told = {(row["rule_id"], row["profile"]): row for row in judged[1] if row["drive_id"].startswith("collision")}
-    rows = {(row["rule_id"], row["profile"]): row for row in checked(logs, ("collision",), robustness=None)}
+    told = {
+        (row["rule_id"], row["profile"]): row
+        for row in folder_and_findings[1]
+        if row["drive_id"].startswith("collision")
+    }
+    rows = {(row["rule_id"], row["profile"]): row for row in check_findings(logs, ("collision",), robustness=None)}
     assert rows.keys() == told.keys()
     left = [key for key, row in rows.items() if row["n_copies"] is None]
     assert [rule for rule, _ in left] == ["ukhc.r162.safe-distance-ahead"]
@@ -94,9 +104,9 @@ def test_by_default_the_gravest_finding_of_a_rule_is_judged(logs: Path, judged: 
 
 
 @pytest.mark.slow
-def test_windows_tell_what_whole_copies_tell(judged: tuple[Path, list[Row]]) -> None:
+def test_windows_tell_what_whole_copies_tell(folder_and_findings: tuple[Path, list[Row]]) -> None:
     """`explain` judges whole copies of these drives by a path of its own: the same copies keep the finding."""
-    folder, rows = judged
+    folder, rows = folder_and_findings
     doubtful = [row for row in rows if row["n_stays"] < row["n_copies"] or abs(row["margin"]) < 1.0]
     assert doubtful
     for row in doubtful:
@@ -108,26 +118,26 @@ def test_windows_tell_what_whole_copies_tell(judged: tuple[Path, list[Row]]) -> 
 
 
 @pytest.mark.slow
-def test_the_other_drives_of_a_batch_change_nothing(logs: Path, judged: tuple[Path, list[Row]]) -> None:
-    alone = checked(logs, ("collision",))
-    assert alone == [row for row in judged[1] if row["drive_id"].startswith("collision")]
+def test_the_other_drives_of_a_batch_change_nothing(logs: Path, folder_and_findings: tuple[Path, list[Row]]) -> None:
+    alone = check_findings(logs, ("collision",))
+    assert alone == [row for row in folder_and_findings[1] if row["drive_id"].startswith("collision")]
 
 
 @pytest.mark.ci
-def test_no_copy_stays_in_the_database(judged: tuple[Path, list[Row]]) -> None:
-    with duckdb.connect(str(judged[0] / "drivelint.duckdb"), read_only=True) as con:
+def test_no_copy_stays_in_the_database(folder_and_findings: tuple[Path, list[Row]]) -> None:
+    with duckdb.connect(str(folder_and_findings[0] / "drivelint.duckdb"), read_only=True) as con:
         with_drives = con.execute("SELECT table_name FROM duckdb_columns() WHERE column_name = 'drive_id'").fetchall()
         assert len(with_drives) > 50
         for (table,) in with_drives:
             assert con.execute(f"SELECT count(*) FROM {table} WHERE drive_id LIKE '%~%'").fetchone() == (0,), table
         kept = con.execute("SELECT count(*) FROM finding WHERE n_copies IS NOT NULL").fetchone()
         assert kept is not None
-        assert kept[0] == len(judged[1])
+        assert kept[0] == len(folder_and_findings[1])
 
 
 @pytest.mark.ci
 def test_nothing_is_counted_if_it_is_not_asked_for(logs: Path) -> None:
-    rows = checked(logs, ("collision",), robustness=False)
+    rows = check_findings(logs, ("collision",), robustness=False)
     assert rows
     assert all(row["n_copies"] is None and row["n_stays"] is None for row in rows)
 
@@ -144,7 +154,7 @@ def test_findings_that_have_their_copies_are_not_judged_again(logs: Path, monkey
 
     monkeypatch.setattr(RobustnessQuestion, "is_finding_certain", False)
     monkeypatch.setattr(RobustnessJudge, "_judge_windows", judge_and_note)
-    rows = checked(logs, ("collision",))
+    rows = check_findings(logs, ("collision",))
     assert len(rows) > len({row["rule_id"] for row in rows})
     assert all(row["n_copies"] for row in rows)
     assert not any(settled)
@@ -228,11 +238,11 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
     assert asked.is_settled is suffice
 
 
-@pytest.mark.parametrize(("lost", "suffice"), [(2, False), (3, True)])
-def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
+@pytest.mark.parametrize(("n_lost", "suffice"), [(2, False), (3, True)])
+def test_copies_that_show_that_it_is_only_possible_suffice(n_lost: int, suffice: bool) -> None:
     asked = question(-2.0)
     asked.add_results_of_copies(
-        (0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0)
+        (0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - n_lost), -2.0)
     )
     assert asked.is_settled is suffice
     assert not asked.is_finding_certain

@@ -13,7 +13,7 @@ from tests.scenes import drive, moving, road, times
 @pytest.mark.ci
 def test_a_map_that_an_earlier_session_left_is_not_there_twice() -> None:
     way, t = road(), times(3.0)
-    scene = drive([moving("ego", way, t, 100 + 10 * t, way.own)], way.environment)
+    scene = drive([moving("ego", way, t, 100 + 10 * t, way.ego_d)], way.environment)
     rules = catalogue.select_rules(catalogue.load_rules(), ["ukhc.r124.speed-limit"], [])
     counts = []
     with store.connect() as con:

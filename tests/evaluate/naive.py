@@ -32,8 +32,8 @@ class Outcome(NamedTuple):
     verdict: str
     code: str
     worst: int | None
-    expected: int
-    judged: int
+    n_expected: int
+    n_judged: int
 
 
 def segments(times: list[int], gap: int) -> list[int]:

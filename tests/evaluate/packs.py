@@ -20,7 +20,7 @@ HEADER = {
     "legal": '"must"',
     "status": '"stable"',
 }
-MEASURED = {"sense": '">"', "unit": '"m"'}
+MEASURE = {"sense": '">"', "unit": '"m"'}
 HOLDS = {"sense": '"holds"'}
 INVARIANT = {"kind": '"invariant"'}
 EXECUTION = {"kind": '"execution"'}
@@ -65,17 +65,24 @@ def write(
 
 
 def verdicts(
-    rule: Rule, given: dict[str, Any], *, params: dict[str, Any] | None = None, missing: tuple[str, ...] = ()
+    rule: Rule,
+    given_tables: dict[str, Any],
+    *,
+    params: dict[str, Any] | None = None,
+    missing_signals: tuple[str, ...] = (),
 ) -> list[Row]:
     """Return the verdict rows of a scene."""
     return _outcome(
-        rule, Case(name="scene", given_tables=given, expect="pass", params=params or {}, missing_signals=missing)
+        rule,
+        Case(
+            name="scene", given_tables=given_tables, expect="pass", params=params or {}, missing_signals=missing_signals
+        ),
     ).verdicts
 
 
-def findings(rule: Rule, given: dict[str, Any]) -> list[Row]:
+def findings(rule: Rule, given_tables: dict[str, Any]) -> list[Row]:
     """Return the finding rows of a scene."""
-    return _outcome(rule, Case(name="scene", given_tables=given, expect="pass")).findings
+    return _outcome(rule, Case(name="scene", given_tables=given_tables, expect="pass")).findings
 
 
 _LAST: dict[str, CaseOutcome] = {}

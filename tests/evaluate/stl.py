@@ -20,7 +20,7 @@ FAR = 1000.0
 TIMES = "0..13.0 by 0.1"
 
 Signals = dict[str, list[float]]
-Given = dict[str, Any]
+GivenTables = dict[str, Any]
 
 
 class Trace(NamedTuple):
@@ -28,7 +28,7 @@ class Trace(NamedTuple):
 
     signals: Signals
     at: int
-    given: Given
+    given_tables: GivenTables
 
 
 class Dice(NamedTuple):
@@ -51,7 +51,7 @@ class Spec(NamedTuple):
     formula: str
     trace: Callable[[Dice, int], Trace]
     window_s: tuple[float, float] | None = None
-    measured: bool = True
+    is_measured: bool = True
     surely: str | None = None
     """What must hold, too, for a pass: the rule is unknown where only `formula` holds."""
 
@@ -101,7 +101,7 @@ def sign(values: list[bool]) -> list[float]:
     return [1.0 if value else -1.0 for value in values]
 
 
-def _steps(**columns: Any) -> Given:
+def _steps(**columns: Any) -> GivenTables:
     return {"t_s": TIMES, **columns}
 
 
@@ -111,36 +111,36 @@ def _t(at: int) -> float:
 
 def _signal_before(dice: Dice, at: int) -> Trace:
     lit = runs(dice)
-    given = {
+    given_tables = {
         "lane_departure": {"t_s": _t(at), "side": "left", "begin_seen": True, "back": False},
         "ego_state": _steps(indicator=["left" if on else "off" for on in lit]),
     }
-    return Trace({"lit": sign(lit)}, at, given)
+    return Trace({"lit": sign(lit)}, at, given_tables)
 
 
 def _signal_means_go(dice: Dice, at: int) -> Trace:
     yaw = walk(dice, -1.2, 1.2)
     crossings = events(dice)
-    given: Given = {
+    given_tables: GivenTables = {
         "indicator_on": {"t_on_s": _t(at), "t_off_s": 13, "side": "left", "at_log_start": False},
         "ego_state": _steps(yaw_rad=yaw, indicator="left"),
     }
     if crossings:
-        given["lane_departure"] = [
+        given_tables["lane_departure"] = [
             {"occurrence": i, "t_s": _t(k), "side": "left", "begin_seen": True} for i, k in enumerate(crossings)
         ]
     signals = {"yaw": yaw, "start": [yaw[at]] * STEPS, "out": sign([k in crossings for k in range(STEPS)])}
-    return Trace(signals, at, given)
+    return Trace(signals, at, given_tables)
 
 
 def _signal_off(dice: Dice, at: int) -> Trace:
     lit = runs(dice)
-    given = {
+    given_tables = {
         "indicator_on": {"t_on_s": 0, "t_off_s": 13, "side": "left", "at_log_start": False},
         "lane_change": {"t_start_s": 0, "t_done_s": _t(at), "side": "left", "begin_seen": True, "known": True},
         "ego_state": _steps(indicator=["left" if on else "off" for on in lit]),
     }
-    return Trace({"lit": sign(lit)}, at, given)
+    return Trace({"lit": sign(lit)}, at, given_tables)
 
 
 def _restored(low: float, high: float) -> Callable[[Dice, int], Trace]:
@@ -148,49 +148,49 @@ def _restored(low: float, high: float) -> Callable[[Dice, int], Trace]:
 
     def trace(dice: Dice, at: int) -> Trace:
         gap, v = walk(dice, low, high), walk(dice, 3.0, 16.0)
-        given = {
+        given_tables = {
             "cut_in": {"t_s": _t(at), "object_id": "b", "gap_m": gap[at], "begin_seen": True, "side": "left"},
             "ego_state": _steps(speed_mps=v),
             "lead": _steps(object_id="b", gap_m=gap, ego_speed_mps=v, speed_mps=v, in_lane=True, oncoming=False),
         }
-        return Trace({"gap": gap, "v": v}, at, given)
+        return Trace({"gap": gap, "v": v}, at, given_tables)
 
     return trace
 
 
 def _clear(dice: Dice, at: int) -> Trace:
     clear = walk(dice, -0.5, 2.5)
-    given = {
+    given_tables = {
         "cut_in": {"t_s": _t(at), "object_id": "b", "gap_m": 100, "ego_speed_mps": 20, "speed_mps": 19, "side": "left"},
         "ego_state": _steps(speed_mps=20),
         "pair": _steps(object_id="b", clearance_m=clear, clearance_is_bound=False),
     }
-    return Trace({"clear": clear}, at, given)
+    return Trace({"clear": clear}, at, given_tables)
 
 
 def _passing(dice: Dice, at: int) -> Trace:
     got_ahead = events(dice)
-    given: Given = {
+    given_tables: GivenTables = {
         "junction_passage": {"t_in_s": _t(at), "turn": "left", "across": False},
         "ego_state": _steps(speed_mps=8),
     }
     if got_ahead:
-        given["passing"] = [
+        given_tables["passing"] = [
             {"occurrence": i, "t_s": _t(k), "object_id": "c", "ego_passes": True, "side": "left", "speed_mps": 4}
             for i, k in enumerate(got_ahead)
         ]
-    return Trace({"free": sign([k not in got_ahead for k in range(STEPS)])}, at, given)
+    return Trace({"free": sign([k not in got_ahead for k in range(STEPS)])}, at, given_tables)
 
 
 def _speed(dice: Dice, at: int) -> Trace:
     v, limit = walk(dice, 8.0, 16.0), walk(dice, 12.0, 16.0)
-    given = {
+    given_tables = {
         "ego_state": _steps(speed_mps=v, limit_mps=limit),
         "ego_condition": _steps(engaged=True, limit_mps=limit, vehicle_class="car", road_type="motorway"),
     }
     # between two samples: up with 3.5 m/s2, then down with 8
     peak = [max(a, (8 * a + 3.5 * b + 28 * PERIOD_S) / 11.5) for a, b in pairwise(v)] + v[-1:]
-    return Trace({"v": v, "limit": limit, "peak": peak}, at, given)
+    return Trace({"v": v, "limit": limit, "peak": peak}, at, given_tables)
 
 
 def _behind(
@@ -201,7 +201,7 @@ def _behind(
     def trace(dice: Dice, at: int) -> Trace:
         signals = {"gap": walk(dice, *gap), "v": walk(dice, *v), "w": walk(dice, *ahead)}
         follows = runs(dice)
-        given = {
+        given_tables = {
             "ego_state": _steps(speed_mps=signals["v"]),
             "ego_condition": _steps(
                 engaged=True, limit_mps=30, weather="dry", road_type="motorway", vehicle_class="bus"
@@ -210,44 +210,44 @@ def _behind(
                 object_id="b", follows=follows, gap_m=signals["gap"], ego_speed_mps=signals["v"], speed_mps=signals["w"]
             ),
         }
-        return Trace(signals | {"on": [FAR if on else -FAR for on in follows]}, at, given)
+        return Trace(signals | {"on": [FAR if on else -FAR for on in follows]}, at, given_tables)
 
     return trace
 
 
 def _apart(dice: Dice, at: int) -> Trace:
     clear = walk(dice, -0.5, 2.5)
-    given = {
+    given_tables = {
         "ego_state": _steps(speed_mps=8, fastest_3s_mps=8),
         "pair": _steps(object_id="b", clearance_m=clear, clearance_is_bound=False),
     }
-    return Trace({"clear": clear}, at, given)
+    return Trace({"clear": clear}, at, given_tables)
 
 
 def _comfort(dice: Dice, at: int) -> Trace:
     signals = {"a": walk(dice, -5, 3), "lat": walk(dice, -6, 6), "jerk": walk(dice, -5, 5)}
-    given = {
+    given_tables = {
         "ego_state": _steps(speed_mps=8),
         "ego_condition": _steps(vehicle_class="car", engaged=True),
         "ego_motion": _steps(accel_mps2=signals["a"], lat_accel_mps2=signals["lat"], jerk_mps3=signals["jerk"]),
     }
-    return Trace(signals, at, given)
+    return Trace(signals, at, given_tables)
 
 
 _STOPPING = "0.058 + 0.289 * (v / 0.44704) + 0.015 * (v / 0.44704) * (v / 0.44704)"
 
 SPECS = (
-    Spec("ukhc.r103.signal-before", "historically[0s,5s](lit >= 0)", _signal_before, (5, 0), measured=False),
+    Spec("ukhc.r103.signal-before", "historically[0s,5s](lit >= 0)", _signal_before, (5, 0), is_measured=False),
     Spec(
         "ukhc.r103.signal-means-go",
         "eventually[0s,10s]((out >= 0) or (yaw - start >= 0.5))",
         _signal_means_go,
         (0, 10),
-        measured=False,
+        is_measured=False,
     ),
-    Spec("ukhc.r103.signal-off", "eventually[0s,5s](lit <= 0)", _signal_off, (0, 5), measured=False),
-    Spec("ukhc.r168.drop-back", "eventually[0s,10s](gap >= 2 * v)", _restored(0, 30), (0, 10), measured=False),
-    Spec("ukhc.r182.no-pass-before-turn", "historically[0s,5s](free >= 0)", _passing, (5, 0), measured=False),
+    Spec("ukhc.r103.signal-off", "eventually[0s,5s](lit <= 0)", _signal_off, (0, 5), is_measured=False),
+    Spec("ukhc.r168.drop-back", "eventually[0s,10s](gap >= 2 * v)", _restored(0, 30), (0, 10), is_measured=False),
+    Spec("ukhc.r182.no-pass-before-turn", "historically[0s,5s](free >= 0)", _passing, (5, 0), is_measured=False),
     Spec(
         "alks-r157.cut-in-gap",
         "eventually[0s,10s](gap >= v * (1.1 + 0.01 * (3.6 * v - 10)))",

@@ -40,16 +40,19 @@ def at_event(tmp_path: Path, applies: str = "", kind: dict[str, str] = EXECUTION
     return write(tmp_path, kind | SPEED | AT, body, name="event", tables=applies and f"[applies]\n{applies}")
 
 
-def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
+def drive(speeds: list[Any], *, at: Any = None, **conditions: Any) -> dict[str, Any]:
     """Return a scene at ten steps a second in which these conditions hold."""
     times = [i / 10 for i in range(len(speeds))]
-    scene: dict[str, Any] = {"ego_state": {"t_s": times, "speed_mps": speeds}, "ego_condition": {"t_s": times, **given}}
+    scene: dict[str, Any] = {
+        "ego_state": {"t_s": times, "speed_mps": speeds},
+        "ego_condition": {"t_s": times, **conditions},
+    }
     return scene | ({} if at is None else {"exit_taken": {"t_s": at}})
 
 
 @pytest.mark.sample(2, ci=10)
 @pytest.mark.parametrize(
-    ("applies", "given", "expected"),
+    ("applies", "conditions", "expected"),
     [
         ('road_type = ["town"]', {"road_type": "town"}, "in"),
         ('road_type = ["town"]', {"road_type": "townLocal"}, "in"),
@@ -97,9 +100,9 @@ def drive(speeds: list[Any], *, at: Any = None, **given: Any) -> dict[str, Any]:
     ],
 )
 def test_a_rule_holds_where_all_its_conditions_do(
-    tmp_path: Path, applies: str, given: dict[str, Any], expected: str
+    tmp_path: Path, applies: str, conditions: dict[str, Any], expected: str
 ) -> None:
-    scene = drive([12, 12, 12], at=0.1, **given)
+    scene = drive([12, 12, 12], at=0.1, **conditions)
     ends = {"in": (PASS, PASS), "out": (NOWHERE, OUT), "never": (("not_applicable", "not_engaged"), OUT)}
     wanted = ends.get(expected, (("unknown", expected), ("unknown", expected)))
     rules = invariant(tmp_path, applies), at_event(tmp_path, applies)
@@ -108,7 +111,7 @@ def test_a_rule_holds_where_all_its_conditions_do(
 
 @pytest.mark.sample(1, ci=1)
 @pytest.mark.parametrize(
-    ("law", "nation", "judged"),
+    ("law", "nation", "is_judged"),
     [
         ("de", "de", True),
         ("de", "gb", False),
@@ -121,7 +124,7 @@ def test_a_rule_holds_where_all_its_conditions_do(
     ],
 )
 def test_the_law_of_a_nation_is_not_applied_in_another(
-    tmp_path: Path, law: str, nation: str | None, judged: bool
+    tmp_path: Path, law: str, nation: str | None, is_judged: bool
 ) -> None:
     """What fails there fails still where the nation is not known; a signal that is missing too does not matter."""
     scene = drive([9, 12, 9], at=0.2, nation=nation)
@@ -129,15 +132,15 @@ def test_the_law_of_a_nation_is_not_applied_in_another(
     foreign = ("not_applicable", "other_nation")
     for rule in rules:
         (row,) = verdicts(rule, scene)
-        assert (row["verdict"], row["reason_code"]) == (("fail", row["reason_code"]) if judged else foreign)
-        assert len(findings(rule, scene)) == judged
+        assert (row["verdict"], row["reason_code"]) == (("fail", row["reason_code"]) if is_judged else foreign)
+        assert len(findings(rule, scene)) == is_judged
     needs = invariant(tmp_path, law=f'["{law}"]', requires='["map"]')
-    (row,) = verdicts(needs, scene, missing=("map",))
-    assert (row["verdict"], row["reason_code"]) == (("unknown", "missing_map") if judged else foreign)
+    (row,) = verdicts(needs, scene, missing_signals=("map",))
+    assert (row["verdict"], row["reason_code"]) == (("unknown", "missing_map") if is_judged else foreign)
 
 
 @pytest.mark.parametrize(
-    ("applies", "given", "expected"),
+    ("applies", "conditions", "expected"),
     [
         ('light = ["night"]', {"light": "day"}, OUT),
         ('light = ["night"]', {"light": ["day", "day", "day"]}, OUT),
@@ -160,13 +163,13 @@ def test_the_law_of_a_nation_is_not_applied_in_another(
     ],
 )
 def test_a_signal_is_not_missed_where_known_conditions_exclude_the_rule(
-    tmp_path: Path, applies: str, given: dict[str, Any], expected: tuple[str, str] | None
+    tmp_path: Path, applies: str, conditions: dict[str, Any], expected: tuple[str, str] | None
 ) -> None:
     """`expected` None: the missing signal leaves the rule unknown."""
     needed = {"requires": '["map"]'}
     rules = invariant(tmp_path, applies, **needed), at_event(tmp_path, applies, EXECUTION | needed)
     for rule in rules:
-        found = verdicts(rule, drive([9, 12, 9], at=0.2, **given), missing=("map",))
+        found = verdicts(rule, drive([9, 12, 9], at=0.2, **conditions), missing_signals=("map",))
         assert brief(found) == [expected or ("unknown", "missing_map")]
         assert found[0]["assumes"] is None
 

@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.evaluate import evaluate, evaluation
 from drivelint.sql import store
-from tests.evaluate.packs import BEFORE, EXECUTION, HOLDS, INVARIANT, MEASURED, write
+from tests.evaluate.packs import BEFORE, EXECUTION, HOLDS, INVARIANT, MEASURE, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,8 +31,8 @@ def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
     signal = {"reads": '["ego_state", "declared_event"]', "window_s": "2.0"}
     indicator = "SELECT drive_id, ego_id, t_ns, indicator = 'left' AS holds FROM ego_state"
     return [
-        write(folder, INVARIANT | MEASURED | pair, {"condition": gap}, name="gap"),
-        write(folder, EXECUTION | MEASURED | events, {"reference": reference, "condition": gap}, name="all"),
+        write(folder, INVARIANT | MEASURE | pair, {"condition": gap}, name="gap"),
+        write(folder, EXECUTION | MEASURE | events, {"reference": reference, "condition": gap}, name="all"),
         write(folder, BEFORE | HOLDS | signal, {"reference": reference, "condition": indicator}, name="signal"),
     ]
 

@@ -8,7 +8,7 @@ import pytest
 
 from drivelint.catalogue import load_rules
 from drivelint.sql.declarations import column_comments, input_quantities_by_column, lifetimes
-from tests.evaluate.packs import INVARIANT, MEASURED, brief, verdicts, write
+from tests.evaluate.packs import INVARIANT, MEASURE, brief, verdicts, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,7 +22,7 @@ GAP = "SELECT drive_id, ego_id, object_id, t_ns, clearance_m AS observed, 0 AS r
 @pytest.mark.parametrize("quantity", ["position", "heading", "size", "existence", "identity"])
 @pytest.mark.parametrize("actor", ["7", "e"])
 def test_the_object_counts_as_the_ego_does(tmp_path: Path, quantity: str, actor: str) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": GAP})
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["pair"]'}, {"condition": GAP})
     doubt = {"actor_id": actor, "quantity": quantity, "t_from_s": 0.8, "t_to_s": 1.2, "code": "velocity_jolt"}
     for gap in (3, {"else": 3, "1": -1}):
         pair = {"t_s": "0..2 by 0.1", "object_id": "7", "clearance_m": gap}
@@ -35,7 +35,7 @@ def test_what_only_words_a_reason_is_not_used(tmp_path: Path) -> None:
     worded = GAP.replace(
         "FROM pair", ", why('object_lacks', {'object_id': speed_mps, 'lack': 'no_size'}) AS reason FROM pair"
     )
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": worded})
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["pair"]'}, {"condition": worded})
     assert "velocity" not in rule.quantities
 
 

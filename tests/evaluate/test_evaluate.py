@@ -13,7 +13,7 @@ from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate, query_plans
 from drivelint.evaluate.evaluation import Evaluation
 from drivelint.sql import store
-from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURED, write
+from tests.evaluate.packs import EXECUTION, INVARIANT, MEASURE, write
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,8 +54,8 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def rules(tmp_path: Path) -> list[Rule]:
-    header = INVARIANT | MEASURED | READS
-    events = EXECUTION | MEASURED | {"reads": '["ego_state", "exit_taken"]'}
+    header = INVARIANT | MEASURE | READS
+    events = EXECUTION | MEASURE | {"reads": '["ego_state", "exit_taken"]'}
     reference = "SELECT drive_id, ego_id, t_ns FROM exit_taken"
     broken = SPEED.replace("speed_mps", "lanelet_id::DOUBLE")
     return [
@@ -94,9 +94,9 @@ def test_verdicts_are_appended_and_nothing_is_left_behind(con: duckdb.DuckDBPyCo
     assert con.execute("SELECT table_name FROM duckdb_tables() ORDER BY ALL").fetchall() == before
 
 
-@pytest.mark.parametrize("most", [0, 1_000_000], ids=["rule by rule", "at once"])
+@pytest.mark.parametrize("most_rows", [0, 1_000_000], ids=["rule by rule", "at once"])
 def test_where_outcomes_of_several_rules_fail_each_rule_is_judged_alone(
-    con: duckdb.DuckDBPyConnection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: int
+    con: duckdb.DuckDBPyConnection, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most_rows: int
 ) -> None:
     packs = rules(tmp_path)
     query = "SELECT * FROM verdict ORDER BY ALL"
@@ -112,10 +112,10 @@ def test_where_outcomes_of_several_rules_fail_each_rule_is_judged_alone(
         aggregate_pending_steps(self)
 
     monkeypatch.setattr(Evaluation, "aggregate_pending_steps", fail)
-    monkeypatch.setattr("drivelint.evaluate.evaluation.MOST_PENDING_ROWS", most)
+    monkeypatch.setattr("drivelint.evaluate.evaluation.MOST_PENDING_ROWS", most_rows)
     evaluate(con, packs)
     found = con.execute(query).fetchall()
-    assert (max(sizes) > 1) == (most > 0)
+    assert (max(sizes) > 1) == (most_rows > 0)
     kept, new = ([row for row in rows if not row[2].endswith("map")] for rows in (usual, found))
     assert new == kept
     blamed = con.execute(
@@ -167,7 +167,7 @@ def test_explain_shows_a_plan_that_joins_by_nested_loops(con: duckdb.DuckDBPyCon
     bad = sql.replace(
         "USING (drive_id, ego_id)", "ON p.drive_id = e.drive_id AND (p.object_id IS NULL OR p.t_ns = e.t_ns)"
     )
-    header = INVARIANT | MEASURED | {"reads": '["ego_state", "pair"]'}
+    header = INVARIANT | MEASURE | {"reads": '["ego_state", "pair"]'}
     plans = {
         name: "".join(query_plans(con, write(tmp_path, header, {"condition": text}, name=name, tables=PARAM)))
         for name, text in (("good", sql), ("bad", bad))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.evaluate.packs import HOLDS, INVARIANT, MEASURED, brief, verdicts, write
+from tests.evaluate.packs import HOLDS, INVARIANT, MEASURE, brief, verdicts, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +46,7 @@ def test_the_operator_decides_and_equality_fails_a_strict_one(
 
 
 @pytest.mark.parametrize(
-    ("values", "expected", "worst_s", "judged"),
+    ("values", "expected", "worst_s", "n_judged"),
     [
         ([12, 11, 13], ("pass", "kept"), 0.1, 3),
         ([12, 9, 8, 8], ("fail", "violated"), 0.2, 4),
@@ -59,11 +59,11 @@ def test_the_operator_decides_and_equality_fails_a_strict_one(
         ([12, -math.inf], ("fail", "violated"), 0.1, 2),
     ],
 )
-def test_always(tmp_path: Path, values: list[Any], expected: tuple[str, str], worst_s: float, judged: int) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | SPEED, {"condition": SPEED_SQL})
+def test_always(tmp_path: Path, values: list[Any], expected: tuple[str, str], worst_s: float, n_judged: int) -> None:
+    rule = write(tmp_path, INVARIANT | MEASURE | SPEED, {"condition": SPEED_SQL})
     (row,) = verdicts(rule, speeds(values))
     assert brief([row]) == [expected]
-    assert (row["t_worst_ns"], row["n_expected"], row["n_judged"]) == (round(worst_s * 1e9), len(values), judged)
+    assert (row["t_worst_ns"], row["n_expected"], row["n_judged"]) == (round(worst_s * 1e9), len(values), n_judged)
     assert row["x_m"] == round(worst_s * 10)
     for column in ("observed", "required", "margin"):
         assert row[column] is None or math.isfinite(row[column])
@@ -152,6 +152,6 @@ def test_applies_is_three_valued(
         }
     else:
         sections = {"condition": SPEED_SQL.replace(" FROM", ", in_junction AS applies FROM")}
-    rule = write(tmp_path, INVARIANT | MEASURED | SPEED, sections)
+    rule = write(tmp_path, INVARIANT | MEASURE | SPEED, sections)
     rows = verdicts(rule, speeds(values, in_junction=applies))
     assert [(r["verdict"], r["reason_code"], r["n_expected"]) for r in rows] == expected

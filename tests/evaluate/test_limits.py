@@ -44,7 +44,7 @@ def options(pack: Path, *traces: str, seconds: float = 0.5) -> CheckOptions:
     )
 
 
-def kept(verdicts: pa.Table) -> list[dict[str, object]]:
+def harmless_rows(verdicts: pa.Table) -> list[dict[str, object]]:
     """Return the rows of the rules that are no bombs."""
     return [row for row in verdicts.to_pylist() if row["rule_id"] in {"bomb.harmless", SHIPPED}]
 
@@ -66,7 +66,7 @@ def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_pat
     names = ("cross_join", "rows", "long_code", "long_reason")
     found = check(options(write_pack(tmp_path / "bad", names[:3]), "safe", seconds=1.0), Silent()).verdicts
     alone = check(options(write_pack(tmp_path / "good", ()), "safe"), Silent()).verdicts
-    assert kept(found) == kept(alone)
+    assert harmless_rows(found) == harmless_rows(alone)
     late = "took more than 1.0 s of computing: make its SQL cheaper, or allow it more time with --rule-timeout"
     long = "Invalid Input Error: it returned a text of more than 10,000 bytes"
     assert reasons(found) == {
@@ -82,7 +82,7 @@ def test_a_rule_loses_its_turn_after_three_times(tmp_path: Path) -> None:
     drives = ("collision", "near_miss", "safe")
     found = check(options(write_pack(tmp_path / "bad", ("rows",)), *drives, seconds=2.0), Silent()).verdicts
     alone = check(options(write_pack(tmp_path / "good", ()), *drives), Silent()).verdicts
-    assert kept(found) == kept(alone)
+    assert harmless_rows(found) == harmless_rows(alone)
     tried = [("earlier in this run" not in reason) for _, _, reason in reasons(found).values()]
     assert tried == [True, True, False]
     assert {(verdict, code) for verdict, code, _ in reasons(found).values()} == {("error", "rule_timeout")}
@@ -112,7 +112,7 @@ def assert_contained(tmp_path: Path, names: tuple[str, ...]) -> subprocess.Compl
     code = 2 if {"long_code", "long_reason", "many_long_reasons"} & set(names) else 4
     assert (found.returncode, alone.returncode) == (code, 0), found.stderr + alone.stderr
     verdicts = pq.read_table(tmp_path / "a" / "verdicts.parquet")
-    assert kept(verdicts) == kept(pq.read_table(tmp_path / "b" / "verdicts.parquet"))
+    assert harmless_rows(verdicts) == harmless_rows(pq.read_table(tmp_path / "b" / "verdicts.parquet"))
     told = reasons(verdicts)
     assert {name for name, _ in told} == set(names)
     assert {verdict for verdict, _, _ in told.values()} == {"error"}
@@ -151,7 +151,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
     found: list[tuple[str, int]] = []
     ended = Event()
 
-    class Deaf:
+    class DeafHandler:
         @staticmethod
         def exceeded_limits(_task: str) -> dict[str, limits.Excess]:
             return {}
@@ -165,7 +165,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
     monkeypatch.setattr(limits, "_RULE_LIMIT_CHECK_PERIOD_S", 0.001)
     monkeypatch.setattr(limits, "_GRACE_AFTER_MEMORY_EXCESS_S", 60.0)
-    held_to = limits.RuleLimits(60.0, unstoppable_rule_handler=cast("limits.UnstoppableRuleHandler", Deaf))
+    held_to = limits.RuleLimits(60.0, unstoppable_rule_handler=cast("limits.UnstoppableRuleHandler", DeafHandler))
     held_to.memory = lambda: 1_000
     with duckdb.connect() as con, held_to.limit_statements(con, "mine.grows", alone=True) as held:
         assert ended.wait(30.0)
@@ -214,7 +214,7 @@ def test_a_drive_of_several_batches_may_take_as_many_times_as_long() -> None:
     assert limits.RuleLimits(None).allowed_cpu_s is None
 
 
-ONE = """
+BOMB_SCRIPT = """
 import json, os, sys, time
 from drivelint.evaluate import limits
 from drivelint.report.progress import Silent
@@ -226,7 +226,7 @@ def told(how):
     print(json.dumps({"how": how, "cpu_s": time.process_time() - began, "grown": limits.resident_bytes() - before}), flush=True)
     os._exit(0)
 
-class Deaf:
+class DeafHandler:
     exceeded_limits = staticmethod(lambda task: {})
     restart_without = staticmethod(lambda task, rule, excess: told("deaf " + excess))
 
@@ -240,7 +240,7 @@ limits.RuleLimits.limit_statements = limit_statements
 from drivelint.evaluate.evaluation import Evaluation
 blame = Evaluation._record_error
 Evaluation._record_error = lambda self, binding, error, excess: told(excess or str(error).splitlines()[0])
-check(options(Path(sys.argv[2]), "safe", seconds=2.0), Silent(), None, Deaf)
+check(options(Path(sys.argv[2]), "safe", seconds=2.0), Silent(), None, DeafHandler)
 """
 
 
@@ -248,7 +248,7 @@ check(options(Path(sys.argv[2]), "safe", seconds=2.0), Silent(), None, Deaf)
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_bomb_ends_within_twice_its_limit(name: str, tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", ONE, name, str(write_pack(tmp_path, (name,)))],
+        [sys.executable, "-c", BOMB_SCRIPT, name, str(write_pack(tmp_path, (name,)))],
         capture_output=True,
         text=True,
         check=False,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.evaluate.packs import INVARIANT, MEASURED, brief, verdicts, write
+from tests.evaluate.packs import INVARIANT, MEASURE, brief, verdicts, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,14 +45,16 @@ def test_an_error_takes_back_a_miss_and_no_pass(
     assert brief([row]) == [expected]
 
 
-@pytest.mark.parametrize(("value", "seen", "known"), [(9.6, UNKNOWN, FAIL), (9.5, UNKNOWN, FAIL), (9.4, FAIL, FAIL)])
+@pytest.mark.parametrize(
+    ("value", "sensor_outcome", "exact_outcome"), [(9.6, UNKNOWN, FAIL), (9.5, UNKNOWN, FAIL), (9.4, FAIL, FAIL)]
+)
 def test_what_sensors_saw_is_known_to_five_per_cent(
-    tmp_path: Path, value: float, seen: tuple[str, str], known: tuple[str, str]
+    tmp_path: Path, value: float, sensor_outcome: tuple[str, str], exact_outcome: tuple[str, str]
 ) -> None:
     """Ground truth is exact; a recorder that sees 50 m has measured."""
-    rule = write(tmp_path, INVARIANT | MEASURED | READS, {"condition": SQL.format(more="")})
-    assert brief(verdicts(rule, scene([value] * 3, sensors=50.0))) == [seen]
-    assert brief(verdicts(rule, scene([value] * 3))) == [known]
+    rule = write(tmp_path, INVARIANT | MEASURE | READS, {"condition": SQL.format(more="")})
+    assert brief(verdicts(rule, scene([value] * 3, sensors=50.0))) == [sensor_outcome]
+    assert brief(verdicts(rule, scene([value] * 3))) == [exact_outcome]
     assert brief(verdicts(rule, scene([10.4] * 3, sensors=50.0))) == [PASS]
 
 

@@ -11,7 +11,7 @@ from tests.evaluate.packs import (
     BEFORE,
     EXECUTION,
     HOLDS,
-    MEASURED,
+    MEASURE,
     PLACE_BEFORE,
     brief,
     findings,
@@ -52,7 +52,7 @@ def scene(signal: Any, at: Any, times: Any = "0..4 by 0.1", **more: Any) -> dict
 )
 def test_execution_without_a_value(tmp_path: Path, speed: Any, at: Any, expected: tuple[str, str]) -> None:
     sql = REFERENCE.replace("t_ns", "t_sign_ns AS t_ns")
-    rule = write(tmp_path, EXECUTION | MEASURED | READS, {"reference": sql, "condition": SPEED})
+    rule = write(tmp_path, EXECUTION | MEASURE | READS, {"reference": sql, "condition": SPEED})
     given = scene("off", 1.0, speed_mps=speed)
     given["exit_taken"] = [] if at == [] else {"t_s": 1.0, "t_sign_s": at}
     assert brief(verdicts(rule, given)) == [expected]
@@ -64,7 +64,7 @@ def test_execution_without_a_value(tmp_path: Path, speed: Any, at: Any, expected
 def test_execution_may_not_apply(tmp_path: Path, applies: Any, expected: tuple[str, str]) -> None:
     rule = write(
         tmp_path,
-        EXECUTION | MEASURED | READS,
+        EXECUTION | MEASURE | READS,
         {"reference": REFERENCE, "condition": SPEED.replace(" FROM", ", in_junction AS applies FROM")},
     )
     assert brief(verdicts(rule, scene("off", 2.0, in_junction=applies))) == [expected]
@@ -75,7 +75,7 @@ PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1
 
 
 @pytest.mark.parametrize(
-    ("clearances", "each", "every", "some"),
+    ("clearances", "verdicts_of_each", "verdict_of_all", "verdict_of_any"),
     [
         ([2, 3], ["pass", "pass"], "pass", "pass"),
         ([2, 0], ["pass", "fail"], "fail", "pass"),
@@ -86,23 +86,23 @@ PAIR_SQL = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 1
     ],
 )
 def test_combination_over_objects(
-    tmp_path: Path, clearances: list[Any], each: list[str], every: str, some: str
+    tmp_path: Path, clearances: list[Any], verdicts_of_each: list[str], verdict_of_all: str, verdict_of_any: str
 ) -> None:
     got = []
     given: dict[str, Any] = {"step": {"t_s": [0, 1, 2]}, "exit_taken": {"t_s": 1.0}}
     given["pair"] = [{"t_s": 1.0, "object_id": str(i), "clearance_m": c} for i, c in enumerate(clearances)]
     for combine in ("each", "all", "any"):
-        header = EXECUTION | MEASURED | PAIR | {"combine": f'"{combine}"'}
+        header = EXECUTION | MEASURE | PAIR | {"combine": f'"{combine}"'}
         rule = write(tmp_path, header, {"reference": REFERENCE, "condition": PAIR_SQL}, name=combine)
         got.append([r["verdict"] for r in verdicts(rule, given)])
-    assert got == [each, [every], [some]]
+    assert got == [verdicts_of_each, [verdict_of_all], [verdict_of_any]]
 
 
 # ---- temporal windows
 
 
 @pytest.mark.parametrize(
-    ("signal", "at", "expected", "judged"),
+    ("signal", "at", "expected", "counts"),
     [
         ("left", 2.0, ("pass", "kept"), (11, 11)),
         ({"else": "left", "1.5": "off"}, 2.0, ("fail", "violated"), (11, 11)),
@@ -116,12 +116,12 @@ def test_combination_over_objects(
     ],
 )
 def test_temporal_precondition(
-    tmp_path: Path, signal: Any, at: float, expected: tuple[str, str], judged: tuple[int, int]
+    tmp_path: Path, signal: Any, at: float, expected: tuple[str, str], counts: tuple[int, int]
 ) -> None:
     rule = write(tmp_path, BEFORE | HOLDS | READS, {"reference": REFERENCE, "condition": SIGNAL})
     (row,) = verdicts(rule, scene(signal, at))
     assert brief([row]) == [expected]
-    assert (row["n_expected"], row["n_judged"]) == judged
+    assert (row["n_expected"], row["n_judged"]) == counts
     assert (row["t_start_ns"], row["t_end_ns"], row["t_ref_ns"]) == (
         round((at - 1) * 1e9),
         round(at * 1e9),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from tests.evaluate.packs import INVARIANT, MEASURED, brief, verdicts, write
+from tests.evaluate.packs import INVARIANT, MEASURE, brief, verdicts, write
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +30,7 @@ def scene(missed: Sequence[int], places: Any, sensors: float | None = 50.0, acto
     }
 
 
-def measured() -> Any:
+def measured_places() -> Any:
     """Return places that were measured at each step: no three lie on a line."""
     return np.arange(N) + 0.02 * np.sin(2.5 * np.arange(N))
 
@@ -44,10 +44,10 @@ def interpolated(every: int = 5, shift: int = 0) -> Any:
 @pytest.mark.parametrize(
     ("missed", "places", "expected"),
     [
-        ([12], measured(), UNKNOWN),
-        ([0], measured(), UNKNOWN),
-        ([12, 13], measured(), FAIL),
-        ([12, 20], measured(), UNKNOWN),
+        ([12], measured_places(), UNKNOWN),
+        ([0], measured_places(), UNKNOWN),
+        ([12, 13], measured_places(), FAIL),
+        ([12, 20], measured_places(), UNKNOWN),
         ([8, 9, 10, 11, 12, 13, 14], interpolated(), UNKNOWN),
         ([10, 11, 12, 13, 14, 15], interpolated(), FAIL),
         ([11, 12, 13, 14], interpolated(), UNKNOWN),
@@ -63,24 +63,24 @@ def interpolated(every: int = 5, shift: int = 0) -> Any:
 def test_two_measurements_make_a_miss(
     tmp_path: Path, missed: list[int], places: Any, expected: tuple[str, str]
 ) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": SQL})
     assert brief(verdicts(rule, scene(missed, places))) == [expected]
 
 
 def test_what_is_known_exactly_needs_one(tmp_path: Path) -> None:
     """Ground truth has no sensors; a contact may be over before it is seen twice."""
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
-    assert brief(verdicts(rule, scene([12], measured(), sensors=None))) == [FAIL]
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": SQL})
+    assert brief(verdicts(rule, scene([12], measured_places(), sensors=None))) == [FAIL]
     contact = write(
-        tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]', "tags": '["contact"]'}, {"condition": SQL}
+        tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]', "tags": '["contact"]'}, {"condition": SQL}
     )
-    assert brief(verdicts(contact, scene([12], measured()))) == [FAIL]
+    assert brief(verdicts(contact, scene([12], measured_places()))) == [FAIL]
 
 
 @pytest.mark.ci
 def test_a_bound_that_is_missed_by_less_than_the_error_beside_it_is_no_second_miss(tmp_path: Path) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
-    given = scene([12], measured())
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": SQL})
+    given = scene([12], measured_places())
     given["ego_state"]["speed_mps"][11] = 9.8
     assert brief(verdicts(rule, given)) == [("unknown", "within_error")]
     given["ego_state"]["speed_mps"][11] = 9.4
@@ -90,7 +90,7 @@ def test_a_bound_that_is_missed_by_less_than_the_error_beside_it_is_no_second_mi
 @pytest.mark.parametrize(("missed", "expected"), [([12, 13, 14], UNKNOWN), (list(range(10, 16)), FAIL)])
 def test_the_object_counts_as_the_ego_does(tmp_path: Path, missed: list[int], expected: tuple[str, str]) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, object_id, distance_m AS observed, 10 AS required FROM pair"
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": sql})
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["pair"]'}, {"condition": sql})
     given = scene(missed, interpolated(), actor="car")
     steps = given.pop("ego_state")
     given["actor"]["actor_id"] = ["car", "e"]
@@ -98,7 +98,7 @@ def test_the_object_counts_as_the_ego_does(tmp_path: Path, missed: list[int], ex
     given["actor_state"] = {
         "actor_id": ["car"] * N + ["e"] * N,
         "t_s": steps["t_s"] * 2,
-        "x_m": [*map(float, interpolated()), *map(float, measured() - 20)],
+        "x_m": [*map(float, interpolated()), *map(float, measured_places() - 20)],
         "y_m": 0.0,
     }
     given["pair"] = {"object_id": "car", "t_s": steps["t_s"], "distance_m": steps["speed_mps"]}
@@ -121,8 +121,8 @@ def test_the_object_counts_as_the_ego_does(tmp_path: Path, missed: list[int], ex
 def test_nothing_contradicts_a_detection_that_nobody_was_detected_beside(
     tmp_path: Path, missed: int, unseen: list[int], expected: tuple[str, str]
 ) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
-    given = scene([missed], measured())
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": SQL})
+    given = scene([missed], measured_places())
     given["actor_state"]["x_m"] = [None if i in unseen else x for i, x in enumerate(given["actor_state"]["x_m"])]
     assert brief(verdicts(rule, given)) == [UNKNOWN], "a sample without a place may be one that is not believed"
     given["quality"] = {"check_id": "assumed_motion", "severity": "warning", "message": "a film"}
@@ -130,6 +130,6 @@ def test_nothing_contradicts_a_detection_that_nobody_was_detected_beside(
 
 
 def test_the_sentence_has_both_numbers(tmp_path: Path) -> None:
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["ego_state"]'}, {"condition": SQL})
-    (row,) = verdicts(rule, scene([12], measured()))
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["ego_state"]'}, {"condition": SQL})
+    (row,) = verdicts(rule, scene([12], measured_places()))
     assert row["reason"].startswith("Missed in one measurement only, at 1.200 s (5 m, required more than 10 m)")

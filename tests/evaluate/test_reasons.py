@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.evaluate.packs import INVARIANT, MEASURED, verdicts, write
+from tests.evaluate.packs import INVARIANT, MEASURE, verdicts, write
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,7 +39,7 @@ STATE = {
     ],
 )
 def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: str | None) -> None:
-    header = INVARIANT | MEASURED | {"reads": '["ego_state"]', "requires": '["map", "registration"]'}
+    header = INVARIANT | MEASURE | {"reads": '["ego_state"]', "requires": '["map", "registration"]'}
     rule = write(tmp_path, header, {"condition": SPEED})
     (row,) = verdicts(rule, {"ego_state": STATE | state})
     reason = "A value that the rule needs is not known at 0.100 s"
@@ -65,7 +65,7 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
 )
 def test_an_object_of_which_something_is_not_known(tmp_path: Path, lacks: dict[str, Any], because: str) -> None:
     sql = "SELECT drive_id, ego_id, t_ns, object_id, clearance_m AS observed, 0 AS required FROM pair"
-    rule = write(tmp_path, INVARIANT | MEASURED | {"reads": '["pair"]'}, {"condition": sql})
+    rule = write(tmp_path, INVARIANT | MEASURE | {"reads": '["pair"]'}, {"condition": sql})
     there = {
         "x_m": 1.0, "y_m": 0.0, "yaw_rad": 0.0, "length_m": 4.0, "width_m": 2.0, "speed_mps": 3.0, "actor_class": "car",
     }  # fmt: skip

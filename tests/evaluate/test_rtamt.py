@@ -48,10 +48,10 @@ def robustness(spec: Spec, trace: Trace, formula: str | None = None) -> float:
     return float(rows[trace.at if spec.window_s else 0][1])
 
 
-def ours(spec: Spec, traces: list[Trace]) -> list[CaseOutcome]:
+def our_outcomes(spec: Spec, traces: list[Trace]) -> list[CaseOutcome]:
     """Judge all traces at once, as drives of one database."""
     rule = RULES[spec.rule]
-    members = [NumberedCase(no, complete_scene(rule, trace.given, ()), {}) for no, trace in enumerate(traces)]
+    members = [NumberedCase(no, complete_scene(rule, trace.given_tables, ()), {}) for no, trace in enumerate(traces)]
     outcome = judge([rule], merge_cases(members, "drive_id"), {})[rule.id]
     return [outcome_of_case(outcome, member.no) for member in members]
 
@@ -71,7 +71,7 @@ def check(spec: Spec, trace: Trace, outcome: CaseOutcome) -> str:
         return "unknown"
     verdict = "fail" if "fail" in words else "pass"
     assert words <= {"pass", "fail"}, rows[0]["reason"]
-    if spec.measured:
+    if spec.is_measured:
         assert min(row["margin"] for row in rows) == pytest.approx(value, rel=EXACT, abs=EXACT)
     if abs(value) > EXACT:  # at the limit itself > and >= differ, and to rtamt both are 0
         assert verdict == ("pass" if value > 0 else "fail")
@@ -88,7 +88,7 @@ def test_the_catalogue_and_rtamt_agree(spec: Spec) -> None:
     @given(seeds=st.lists(st.integers(0, 2**32), min_size=15, max_size=20, unique=True))
     def agree(seeds: list[int]) -> None:
         traces = [spec.random(seed) for seed in seeds]
-        for trace, outcome in zip(traces, ours(spec, traces), strict=True):
+        for trace, outcome in zip(traces, our_outcomes(spec, traces), strict=True):
             seen.add(check(spec, trace, outcome))
 
     agree()
@@ -115,7 +115,7 @@ def test_another_formula_would_be_noticed(rule: str, formula: str) -> None:
     traces = [spec.random(seed) for seed in range(40)]
     other = spec._replace(formula=formula)
     noticed = 0
-    for trace, outcome in zip(traces, ours(spec, traces), strict=True):
+    for trace, outcome in zip(traces, our_outcomes(spec, traces), strict=True):
         try:
             check(other, trace, outcome)
         except AssertionError:

@@ -59,10 +59,10 @@ def outline(x: float, y: float, yaw_deg: float) -> Polygon:
 CONTACT_RULES = ("ukhc.no-collision", "ukhc.contact-signature")
 
 
-def nearing(log: Log, other: str, ego: Sample) -> tuple[float, float]:
+def nearing(log: Log, object_id: str, ego: Sample) -> tuple[float, float]:
     """Return the gap of the boxes at a step of the ego, and how fast the centres come nearer, by moving both on for a moment."""
     moment_s = 1e-5
-    last = [s for s in log[other] if s.t_ns <= ego.t_ns][-1]
+    last = [s for s in log[object_id] if s.t_ns <= ego.t_ns][-1]
     age_s = (ego.t_ns - last.t_ns) / 1e9
     apart = outline(ego.x, ego.y, ego.yaw_deg).distance(outline(*last.after(age_s), last.yaw_deg))
     before = math.dist(ego.after(0), last.after(age_s))

@@ -39,7 +39,7 @@ def test_a_small_rule_says(text: dict[str, Any], case: dict[str, Any], tmp_path:
     rule = small_rule(tmp_path, text)
     for scene in case.get("scenes", [case]):
         given = {table: with_times(table, rows) for table, rows in scene["given"].items()}
-        asked: dict[str, Any] = {"missing": tuple(scene.get("missing", ())), "params": scene.get("params")}
+        asked: dict[str, Any] = {"missing_signals": tuple(scene.get("missing", ())), "params": scene.get("params")}
         failed = findings(rule, given) if "verdicts" not in scene or "findings" in str(scene) else []
         assert scene.keys() & {"verdicts", "findings"}
         if "verdicts" in scene:

@@ -13,7 +13,7 @@ from drivelint.casefile.scene import insert_rows
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
 from tests.evaluate import naive
-from tests.evaluate.packs import AFTER, BEFORE, EXECUTION, INVARIANT, MEASURED, PLACE_BEFORE, write
+from tests.evaluate.packs import AFTER, BEFORE, EXECUTION, INVARIANT, MEASURE, PLACE_BEFORE, write
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -24,7 +24,7 @@ CONDITION = """SELECT drive_id, ego_id, t_ns, speed_mps AS observed, 0 AS requir
 FROM ego_state WHERE with_direction"""
 REFERENCE = "SELECT drive_id, ego_id, t_ns, occurrence FROM exit_taken"
 READS = {"reads": '["ego_state"]'}
-BOTH = {"reads": '["ego_state", "exit_taken"]'}
+READS_BOTH = {"reads": '["ego_state", "exit_taken"]'}
 
 
 @pytest.fixture(scope="module")
@@ -45,19 +45,21 @@ def rules(tmp_path_factory: pytest.TempPathFactory) -> list[Rule]:
     anchor = "SELECT ref_id, unnest([t_ns - 300, t_ns, t_ns + 300]) AS t_ns FROM reference"
     wet = '[applies]\nweather = ["wet", "ice"]'
     return [
-        write(folder, INVARIANT | MEASURED | READS, {"condition": CONDITION}, name="invariant_wet", tables=wet),
-        write(folder, EXECUTION | MEASURED | BOTH, at, name="execution_wet", tables=wet),
-        write(folder, AFTER | MEASURED | BOTH | window, at, name="after_wet", tables=wet),
+        write(folder, INVARIANT | MEASURE | READS, {"condition": CONDITION}, name="invariant_wet", tables=wet),
+        write(folder, EXECUTION | MEASURE | READS_BOTH, at, name="execution_wet", tables=wet),
+        write(folder, AFTER | MEASURE | READS_BOTH | window, at, name="after_wet", tables=wet),
         write(
-            folder, INVARIANT | MEASURED | READS | {"merge_gap_s": "3e-7"}, {"condition": CONDITION}, name="invariant"
+            folder, INVARIANT | MEASURE | READS | {"merge_gap_s": "3e-7"}, {"condition": CONDITION}, name="invariant"
         ),
-        write(folder, EXECUTION | MEASURED | BOTH, at, name="execution"),
-        write(folder, BEFORE | MEASURED | BOTH | window, at, name="before"),
-        write(folder, AFTER | MEASURED | BOTH | window, at, name="after"),
-        write(folder, BEFORE | MEASURED | BOTH | window | eventually, at, name="before-eventually"),
-        write(folder, AFTER | MEASURED | BOTH | window | eventually, at, name="after-eventually"),
-        write(folder, PLACE_BEFORE | MEASURED | BOTH, at | {"anchor": anchor}, name="place"),
-        write(folder, PLACE_BEFORE | MEASURED | BOTH | eventually, at | {"anchor": anchor}, name="place-eventually"),
+        write(folder, EXECUTION | MEASURE | READS_BOTH, at, name="execution"),
+        write(folder, BEFORE | MEASURE | READS_BOTH | window, at, name="before"),
+        write(folder, AFTER | MEASURE | READS_BOTH | window, at, name="after"),
+        write(folder, BEFORE | MEASURE | READS_BOTH | window | eventually, at, name="before-eventually"),
+        write(folder, AFTER | MEASURE | READS_BOTH | window | eventually, at, name="after-eventually"),
+        write(folder, PLACE_BEFORE | MEASURE | READS_BOTH, at | {"anchor": anchor}, name="place"),
+        write(
+            folder, PLACE_BEFORE | MEASURE | READS_BOTH | eventually, at | {"anchor": anchor}, name="place-eventually"
+        ),
     ]
 
 
@@ -78,10 +80,10 @@ SUBJECT = st.tuples(
 )
 
 
-def scene(drawn: list[int], *, by_hand: bool) -> list[naive.Step]:
+def scene(numbers: list[int], *, by_hand: bool) -> list[naive.Step]:
     t = 0
     rows: list[tuple[int, bool, bool | None, float | None, bool | None, bool | None]] = []
-    for number in drawn:
+    for number in numbers:
         rest, way = divmod(number, len(WAYS))
         rest, present = divmod(rest, len(PRESENT))
         rest, applies = divmod(rest, len(APPLIES))

@@ -17,7 +17,7 @@ from drivelint.report.outcome import headline, rule_counts
 from drivelint.result.model import exit_status
 from tests.report.synthetic import drive as drive_row
 from tests.report.synthetic import finding, result, rule, verdict
-from tests.scenes import drive, judged, moving, road, saying, times
+from tests.scenes import drive, moving, road, saying, times, verdict_rows
 
 HORN, HAZARDS, SIGNAL, DIRECTION = "r112.horn", "r116.hazards", "exit-sign-signal", "r143.direction"
 
@@ -25,7 +25,7 @@ HORN, HAZARDS, SIGNAL, DIRECTION = "r112.horn", "r116.hazards", "exit-sign-signa
 def scene(*, with_map: bool = True, names: bool | None = None) -> Drive:
     """Return a drive without indicators; `names`: whether its mapping names them."""
     way, t = road(), times(3.0)
-    found = drive([moving("ego", way, t, 100 + 10 * t, way.own)], way.environment if with_map else None)
+    found = drive([moving("ego", way, t, 100 + 10 * t, way.ego_d)], way.environment if with_map else None)
     tables = dict(found.trace.tables)
     log, states = tables["data_log"].to_pylist(), tables["actor_state"]
     log[0] |= {"has_indicator": False, "names_indicator": names}
@@ -37,8 +37,8 @@ def scene(*, with_map: bool = True, names: bool | None = None) -> Drive:
     return replace(found, trace=replace(found.trace, tables=tables))
 
 
-def said(found: Drive, *rules: str) -> dict[str, tuple[str, str]]:
-    rows = judged([found], rules=rules)
+def outcome_by_rule(drive: Drive, *rules: str) -> dict[str, tuple[str, str]]:
+    rows = verdict_rows([drive], rules=rules)
     return {row["rule_id"].removeprefix("ukhc."): (row["verdict"], row["reason_code"]) for row in rows}
 
 
@@ -46,7 +46,7 @@ NOT_THERE = ("not_applicable", "unrecorded_indicator")
 
 
 def test_one_of_many_rules_does_not_apply() -> None:
-    found = said(scene(), "ukhc")
+    found = outcome_by_rule(scene(), "ukhc")
     assert (found[HORN], found[HAZARDS], found[SIGNAL]) == (
         ("not_applicable", "unrecorded_mode_horn"),
         NOT_THERE,
@@ -56,7 +56,7 @@ def test_one_of_many_rules_does_not_apply() -> None:
 
 
 def test_a_rule_that_is_asked_for_by_its_id_is_unknown() -> None:
-    found = said(scene(), f"ukhc.{HORN}", f"ukhc.{HAZARDS},severity:minor", "ukhc.exit-*")
+    found = outcome_by_rule(scene(), f"ukhc.{HORN}", f"ukhc.{HAZARDS},severity:minor", "ukhc.exit-*")
     assert found[HORN] == ("unknown", "missing_mode_horn")
     assert found[HAZARDS] == ("unknown", "missing_indicator")
     assert found[SIGNAL] == NOT_THERE
@@ -65,26 +65,28 @@ def test_a_rule_that_is_asked_for_by_its_id_is_unknown() -> None:
 @pytest.mark.ci
 @pytest.mark.parametrize("names", [True, False])
 def test_a_mapping_that_names_the_signal_asks_for_it(names: bool) -> None:
-    found = said(scene(names=names), "ukhc")
+    found = outcome_by_rule(scene(names=names), "ukhc")
     assert found[HAZARDS] == (("unknown", "missing_indicator") if names else NOT_THERE)
     assert found[HORN] == ("not_applicable", "unrecorded_mode_horn")
 
 
 @pytest.mark.slow
 def test_a_signal_that_the_log_has_is_judged_and_one_of_the_map_stays_unknown() -> None:
-    assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][0] in {"pass", "not_applicable"}
-    assert said(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][1] != "unrecorded_mode_horn"
-    assert said(scene(with_map=False), "ukhc")[DIRECTION] == ("unknown", "missing_map")
+    assert outcome_by_rule(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][0] in {"pass", "not_applicable"}
+    assert outcome_by_rule(saying(scene(), [(0.0, "horn", "off")]), "ukhc")[HORN][1] != "unrecorded_mode_horn"
+    assert outcome_by_rule(scene(with_map=False), "ukhc")[DIRECTION] == ("unknown", "missing_map")
 
 
 @pytest.mark.ci
 def test_the_law_of_another_nation_is_told_first() -> None:
-    assert said(saying(scene(), nation="de"), "ukhc")[HAZARDS] == ("not_applicable", "other_nation")
+    assert outcome_by_rule(saying(scene(), nation="de"), "ukhc")[HAZARDS] == ("not_applicable", "other_nation")
 
 
 @pytest.mark.slow
 def test_outside_its_conditions_a_rule_does_not_apply_whatever_the_log_lacks() -> None:
-    by_day, by_night = (said(saying(scene(), light=light), "ukhc")["r113.headlights"] for light in ("day", "night"))
+    by_day, by_night = (
+        outcome_by_rule(saying(scene(), light=light), "ukhc")["r113.headlights"] for light in ("day", "night")
+    )
     assert (by_day, by_night) == (
         ("not_applicable", "outside_conditions"),
         ("not_applicable", "unrecorded_mode_headlights"),
@@ -93,7 +95,7 @@ def test_outside_its_conditions_a_rule_does_not_apply_whatever_the_log_lacks() -
 
 @pytest.mark.ci
 def test_the_reason_says_what_the_log_lacks() -> None:
-    reasons = {row["rule_id"]: row["reason"] for row in judged([scene()], rules=("ukhc",))}
+    reasons = {row["rule_id"]: row["reason"] for row in verdict_rows([scene()], rules=("ukhc",))}
     assert sentence(reasons[f"ukhc.{HAZARDS}"]) == "the log has no indicators of the ego"
 
 

@@ -17,9 +17,9 @@ def nearest(now: float, turns_at: float) -> tuple[float, int]:
     """Return what is found where the verdict changes at and below `turns_at`, and how many values were judged."""
     judged: list[float] = []
 
-    def judge(asked: Sequence[tuple[_VariedNumber, float]]) -> list[str]:
-        judged.extend(value for _, value in asked)
-        return ["not_applicable" if value <= turns_at else "fail" for _, value in asked]
+    def judge(tried_values: Sequence[tuple[_VariedNumber, float]]) -> list[str]:
+        judged.extend(value for _, value in tried_values)
+        return ["not_applicable" if value <= turns_at else "fail" for _, value in tried_values]
 
     (change,) = _search_changes(
         [_VariedNumber("near_m", "nearer than this", "m", now, math.inf, None, 2)], "fail", judge
@@ -44,8 +44,8 @@ def test_the_named_value_is_short() -> None:
 def test_the_first_of_two_other_verdicts_is_named() -> None:
     """Nearer than 0.21 m nobody is hit hard any more, and at 0.14 m and less nobody is near at all."""
 
-    def judge(asked: Sequence[tuple[_VariedNumber, float]]) -> list[str]:
-        return ["not_applicable" if value <= 0.14 else "pass" if value < 0.21 else "fail" for _, value in asked]
+    def judge(tried_values: Sequence[tuple[_VariedNumber, float]]) -> list[str]:
+        return ["not_applicable" if value <= 0.14 else "pass" if value < 0.21 else "fail" for _, value in tried_values]
 
     (change,) = _search_changes([_VariedNumber("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
     assert (change.becomes, change.beyond) == ("pass", False)

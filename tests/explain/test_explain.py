@@ -20,11 +20,11 @@ from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, Ve
 from drivelint.explain.target import _complete_name, _other_verdicts
 from drivelint.explain.text import _sentence_with_rounded_numbers, render, to_json
 from drivelint.result.text import seconds
-from tests.drawn import drawn
-from tests.explain.checked import OVERTAKE, RULES, check
+from tests.explain.overtake_check import OVERTAKE, RULES, check
+from tests.scene_drives import scene_drive
 from tests.shared_data import ROOT
 
-NONE = MeasurementErrors(samples=0)
+NO_COPIES = MeasurementErrors(samples=0)
 SAFE = (str(OVERTAKE / "safe.csv"),)
 
 
@@ -36,14 +36,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @cache  # several tests look at one explanation; no result is written anew into its folder
-def of(folder: Path, name: str, *, errors: MeasurementErrors = NONE, **wanted: Any) -> Explanation:
-    return explain(ExplainRequest(name, folder, VerdictFilter(**wanted), errors=errors))
+def of(folder: Path, name: str, *, errors: MeasurementErrors = NO_COPIES, **filters: Any) -> Explanation:
+    return explain(ExplainRequest(name, folder, VerdictFilter(**filters), errors=errors))
 
 
-def said(found: Explanation, width: int = 100) -> str:
+def printed_text(explanation: Explanation, width: int = 100) -> str:
     console = Console(width=width, highlight=False)
     with console.capture() as captured:
-        console.print(render(found, width))
+        console.print(render(explanation, width))
     return captured.get()
 
 
@@ -54,7 +54,7 @@ def flat(text: str) -> str:
 def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -> None:
     found = of(folder, "r162.safe@near_miss", profile="nominal")
     assert found.verdict["verdict"] == found.verdict["judged_anew"] == "fail"
-    text = flat(said(found))
+    text = flat(printed_text(found))
     assert "FAIL: the rule was broken" in text
     assert re.sub(r"(\d+\.\d\d)\d+ ", lambda m: f"{float(m[0]):.2f} ", found.verdict["reason"]) in text
     assert "UKHC R162" in text
@@ -71,8 +71,8 @@ def test_a_failed_verdict_says_what_why_and_what_would_change_it(folder: Path) -
 def test_the_header_names_the_first_step_at_which_the_rule_is_broken(folder: Path) -> None:
     found = of(folder, "contact-signature@collision")
     first = next(step.t_ns for step in found.series if step.holds is False)
-    assert f"first broken at {seconds(first, found.drive['t_start_ns'])}" in flat(said(found))
-    assert "first broken" not in said(of(folder, "no-collision@safe"))
+    assert f"first broken at {seconds(first, found.drive['t_start_ns'])}" in flat(printed_text(found))
+    assert "first broken" not in printed_text(of(folder, "no-collision@safe"))
 
 
 def test_a_requirement_is_taken_apart(folder: Path) -> None:
@@ -80,12 +80,12 @@ def test_a_requirement_is_taken_apart(folder: Path) -> None:
     assert math.isclose(sum(part.value for part in found.parts), found.verdict["required"], rel_tol=1e-9)
     assert [part.name for part in found.parts] == ["pull_out_m", "passing_m", "cut_in_m", "oncoming_m", "stopping_m"]
     told = " + ".join(f"{part.description} {part.value:.2f} m" for part in found.parts)
-    assert f"{found.verdict['required']:.2f} m = {told}." in flat(said(found))
+    assert f"{found.verdict['required']:.2f} m = {told}." in flat(printed_text(found))
     assert of(folder, "no-collision@safe").parts == []
 
 
 def test_the_conclusion_stands_first_and_the_sql_last(folder: Path) -> None:
-    text = said(of(folder, "r162.safe@near_miss", profile="nominal"))
+    text = printed_text(of(folder, "r162.safe@near_miss", profile="nominal"))
     headings = [line for line in text.splitlines() if line and line[0].isupper()]
     assert headings[0].startswith("FAIL")
     assert headings[1] == "What happened"
@@ -138,7 +138,7 @@ def test_parameters_are_those_of_the_run_and_change_as_said(folder: Path, tmp_pa
     assert change.nearest_value is not None
     assert change.nearest_value > found.verdict["observed"]
     assert change.nearest_value < 1.1 * found.verdict["observed"]
-    assert f"tyre_mps2 >= {change.nearest_value:g} m/s2 it would pass" in flat(said(found))
+    assert f"tyre_mps2 >= {change.nearest_value:g} m/s2 it would pass" in flat(printed_text(found))
     for value, expected in (
         (change.nearest_value, {"pass", "not_applicable"}),
         (0.95 * found.verdict["observed"], {"fail"}),
@@ -165,7 +165,7 @@ def test_a_finding_is_found_by_the_beginning_of_its_id(folder: Path) -> None:
     assert same.verdict["finding_id"] == mine
     assert same.verdict["drive_id"] == found.verdict["drive_id"]
     assert same.verdict["margin"] == ids[mine]["margin"]
-    assert mine in said(same)
+    assert mine in printed_text(same)
 
 
 def _findings(folder: Path) -> list[dict[str, Any]]:
@@ -178,7 +178,7 @@ def test_the_margin_over_time_has_every_step(folder: Path) -> None:
     assert len(found.series) == found.verdict["n_expected"]
     assert min(step.margin for step in found.series if step.margin is not None) == found.verdict["margin"]
     assert {step.holds for step in found.series} == {True, False}
-    text = said(found)
+    text = printed_text(found)
     assert "limit┼" in text
     assert "The rule has no numeric parameter" in flat(text)
 
@@ -186,7 +186,7 @@ def test_the_margin_over_time_has_every_step(folder: Path) -> None:
 def test_a_passing_verdict(folder: Path) -> None:
     found = of(folder, "no-collision@safe")
     assert found.verdict["verdict"] == "pass"
-    text = flat(said(found))
+    text = flat(printed_text(found))
     assert "PASS: the rule was kept" in text
     assert (
         f"With the same limit, the rule would be broken if distance between the two were {found.verdict['margin']:.2f} m less."
@@ -196,7 +196,7 @@ def test_a_passing_verdict(folder: Path) -> None:
 
 def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     found = of(folder, "r112.horn@safe", errors=MeasurementErrors(samples=5))
-    text = flat(said(found))
+    text = flat(printed_text(found))
     assert "UNKNOWN: it is not known whether the rule was kept: this is not a pass" in text
     assert "no parameter changes that" in text
     assert found.sensitivity is None
@@ -204,7 +204,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     (table,) = found.rows
     assert (table.table, table.rows[0]["available"]) == ("capability", False)
     assert table.rows[0]["reason"] in text
-    assert "What would decide it" in said(found)
+    assert "What would decide it" in printed_text(found)
     assert "When horn is on, as declared events horn with the values on and off" in text
     assert "How it was judged The rule was not run: the log or the map lacks a signal that it requires." in text
     assert "SELECT" not in text
@@ -215,7 +215,7 @@ def test_a_rule_that_did_not_run_as_the_log_lacks_its_signal(tmp_path: Path) -> 
     found = of(tmp_path / "out", "r112.horn@safe")
     assert (found.verdict["verdict"], found.verdict["reason_code"]) == ("not_applicable", "unrecorded_mode_horn")
     assert (found.sensitivity, found.changes, [table.table for table in found.rows]) == (None, [], ["capability"])
-    text = flat(said(found))
+    text = flat(printed_text(found))
     assert "NOT APPLICABLE: the log does not contain a signal that the rule needs" in text
     assert "What would decide it When horn is on, as declared events horn with the values on and off" in text
     assert "The rule reads the event horn (value: on, off)" in text
@@ -236,7 +236,7 @@ def test_an_unknown_condition_is_shown_with_the_place_of_the_ego(tmp_path: Path)
     condition, state = found.rows[:2]
     assert (condition.table, state.table) == ("ego_condition", "ego_state")
     assert (len(condition.rows), condition.rows[0]["weather"], len(state.rows)) == (1, None, 1)
-    shown = said(found)
+    shown = printed_text(found)
     assert re.search(r"ego_condition:(?:\n   .*)*\n +weather +NULL", shown)
     assert re.search(rf"ego_state:(?:\n   .*)*\n +lanelet_id +{re.escape(state.rows[0]['lanelet_id'])}", shown)
 
@@ -261,7 +261,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert found.decides_ns == 8_900_000_000
     pair = next(rows for rows in found.rows if rows.table == "pair")
     assert pair.rows[0]["clearance_m"] is None
-    text = said(found)
+    text = printed_text(found)
     assert re.search(r"clearance_m\s+NULL", text)
     words = (
         "Object oncoming has no position, or only an outdated one: record it. This is for the first of 6 unknown steps"
@@ -274,7 +274,7 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
 def test_an_unknown_names_the_section_and_the_column_without_a_value(tmp_path: Path) -> None:
     traces = (str(OVERTAKE / "collision.csv"),)
     check(tmp_path, traces=traces, rules=("ukhc.r128.back-before-solid",), profiles=("nominal",), params=())
-    text = said(of(tmp_path, "r128.back@collision"), 500)
+    text = printed_text(of(tmp_path, "r128.back@collision"), 500)
     decides = text[text.index("What would decide it") :]
     assert "The SELECT below that gives no value: @anchor." in decides
     assert "NULL in overtake (queries/library/overtakes/overtake.sql): t3_ns." in decides
@@ -287,10 +287,10 @@ def test_an_unknown_names_the_section_and_the_column_without_a_value(tmp_path: P
 @pytest.mark.ci
 def test_an_unknown_names_the_column_that_tells_that_something_is_not_known(tmp_path: Path) -> None:
     """A person is lost beside the crossing; that the map states no kind of it is not the reason."""
-    drawn("crossings", "zebra-walker-lost", tmp_path / "lost")
+    scene_drive("crossings", "zebra-walker-lost", tmp_path / "lost")
     over = {"map": None, "mapping": None, "profiles": ("nominal",), "params": ()}
     check(tmp_path / "out", traces=(str(tmp_path / "lost"),), rules=("ukhc.r195.zebra-on",), **over)
-    text = said(of(tmp_path / "out", "zebra-on"), 500)
+    text = printed_text(of(tmp_path / "out", "zebra-on"), 500)
     decides = text[text.index("What would decide it") :]
     assert "no in crossing_passage (queries/library/junctions/crossing_passage.sql): known." in decides
     assert "WHEN NOT known THEN why('person_unplaced')  -- no here: known" in decides
@@ -325,8 +325,8 @@ def test_a_track_whose_end_was_left_out_is_told(tmp_path: Path) -> None:
     check(tmp_path / "out", traces=(str(log),), rules=("ukhc.no-collision",), params=())
     found = of(tmp_path / "out", "no-collision", object_id="parked")
     assert found.verdict["reason_code"] == "lost_near_ego"
-    assert "drivelint removed the ends of tracks; a longer recording would not change this" in flat(said(found))
-    assert "(oncoming, parked): after a jump, several actors stand at the same position" in flat(said(found))
+    assert "drivelint removed the ends of tracks; a longer recording would not change this" in flat(printed_text(found))
+    assert "(oncoming, parked): after a jump, several actors stand at the same position" in flat(printed_text(found))
 
 
 @pytest.mark.slow
@@ -343,7 +343,7 @@ def test_an_object_whose_track_has_ended_is_shown_where_it_was_last(tmp_path: Pa
     assert found.decides_ns == 7_000_000_000
     (pair,) = [rows for rows in found.rows if rows.table == "pair"]
     assert [row["t_ns"] for row in pair.rows] == [pair.at_ns] == [6_900_000_000]
-    assert "pair at 6.90 s (object parked has no row then; this is its last one before):" in flat(said(found))
+    assert "pair at 6.90 s (object parked has no row then; this is its last one before):" in flat(printed_text(found))
 
 
 @pytest.mark.slow
@@ -363,8 +363,8 @@ def test_small_errors_are_counted_and_the_same_seed_draws_the_same(folder: Path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("n_stays", "told"), [(97, "Sure"), (53, "Only possible")])
-def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_stays: int, told: str) -> None:
+@pytest.mark.parametrize(("n_stays", "certainty"), [(97, "Sure"), (53, "Only possible")])
+def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_stays: int, certainty: str) -> None:
     check(tmp_path, traces=(str(OVERTAKE / "collision.csv"),), rules=("ukhc.no-collision",), params=())
     file = tmp_path / "findings.parquet"
     written = pq.read_table(file)
@@ -378,10 +378,10 @@ def test_the_copies_that_check_judged_are_not_judged_again(tmp_path: Path, n_sta
         found = explain(ExplainRequest(name, tmp_path))
         assert found.sensitivity is not None
         assert (found.sensitivity.counts, found.sensitivity.samples) == ({"fail": n_stays}, 100)
-        words = f"{told}: drivelint check judged 100 copies of the drive with assumed errors, and {n_stays} of them have this finding"
-        assert words in flat(said(found))
+        words = f"{certainty}: drivelint check judged 100 copies of the drive with assumed errors, and {n_stays} of them have this finding"
+        assert words in flat(printed_text(found))
         assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map" in flat(
-            said(found)
+            printed_text(found)
         )
     other = explain(ExplainRequest("no-collision", tmp_path, errors=MeasurementErrors(samples=2))).sensitivity
     assert other is not None
@@ -394,7 +394,7 @@ def test_without_errors_every_copy_is_the_drive(folder: Path) -> None:
         found = of(folder, name, errors=MeasurementErrors(0.0, 0.0, 0.0, 3))
         assert found.sensitivity is not None
         assert found.sensitivity.counts == {found.verdict["verdict"]: 3}
-        assert re.search(r"(Fails|Passes) in 3 of 3", said(found))
+        assert re.search(r"(Fails|Passes) in 3 of 3", printed_text(found))
 
 
 @pytest.mark.slow
@@ -417,11 +417,11 @@ def test_a_log_that_is_gone_is_asked_for_and_another_one_refused(tmp_path: Path)
     moved = log.rename(tmp_path / "moved.csv")
     with pytest.raises(UsageError, match="--trace"):
         of(tmp_path / "out", "r126.ds")
-    found = explain(ExplainRequest("r126.ds", tmp_path / "out", trace=moved, errors=NONE))
+    found = explain(ExplainRequest("r126.ds", tmp_path / "out", trace=moved, errors=NO_COPIES))
     assert found.verdict["judged_anew"] == "fail"
     assert found.verdict["drive_id"].startswith("drive-")
     with pytest.raises(UsageError, match=r"but .* was judged: give the right log"):
-        explain(ExplainRequest("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NONE))
+        explain(ExplainRequest("r126.ds", tmp_path / "out", trace=OVERTAKE / "safe.csv", errors=NO_COPIES))
 
 
 @pytest.mark.slow
@@ -449,8 +449,8 @@ def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     found = of(tmp_path / "out", "mine.near@safe")
     assert found.verdict["verdict"] == "pass"
     assert found.verdict["judged_anew"] == "fail"
-    assert "The rule has changed since" in flat(said(found))
-    assert "Judged again, the verdict is fail, but the result contains pass" in flat(said(found))
+    assert "The rule has changed since" in flat(printed_text(found))
+    assert "Judged again, the verdict is fail, but the result contains pass" in flat(printed_text(found))
 
 
 @pytest.mark.slow
@@ -475,7 +475,7 @@ def test_json_has_it_all(folder: Path) -> None:
 
 
 def test_every_line_fits_a_narrow_terminal(folder: Path) -> None:
-    text = said(of(folder, "r126.ds-av-out-of-ov@near_miss"), 60)
+    text = printed_text(of(folder, "r126.ds-av-out-of-ov@near_miss"), 60)
     assert max(len(line) for line in text.splitlines()) <= 60
 
 
@@ -492,10 +492,10 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "wanted", "message"), MISTAKES)
-def test_mistakes_are_one_clear_line(folder: Path, name: str, wanted: dict[str, Any], message: str) -> None:
+@pytest.mark.parametrize(("name", "filters", "message"), MISTAKES)
+def test_mistakes_are_one_clear_line(folder: Path, name: str, filters: dict[str, Any], message: str) -> None:
     with pytest.raises(UsageError) as error:
-        of(folder, name, **wanted)
+        of(folder, name, **filters)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -540,4 +540,4 @@ def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
     assert told.from_ns >= start - 3_000_000_000
     assert told.to_ns <= end + 3_000_000_000
     assert told.counts == {"fail": 2}
-    assert "copies of the drive, from" in flat(said(found))
+    assert "copies of the drive, from" in flat(printed_text(found))

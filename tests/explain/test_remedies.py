@@ -10,7 +10,7 @@ from drivelint.reasons.signals import REMEDIES, remedy
 
 
 @pytest.mark.parametrize(
-    ("code", "told"),
+    ("code", "advice"),
     [
         ("lost_near_ego", "record object o for as long as the ego"),
         ("missing_map", "the road as OpenDRIVE: --map FILE"),
@@ -24,20 +24,20 @@ from drivelint.reasons.signals import REMEDIES, remedy
         ("a_code_of_a_rule_of_somebody_else", "what is NULL, or has no row, in the rows"),
     ],
 )
-def test_by_code(code: str, told: str) -> None:
-    assert remedy(code, "o", "carla-testbench").startswith(told)
+def test_by_code(code: str, advice: str) -> None:
+    assert remedy(code, "o", "carla-testbench").startswith(advice)
 
 
 @pytest.mark.parametrize(
-    ("code", "asked", "told"),
+    ("code", "cause_advice", "advice"),
     [
         ("null_value", "the track of object 3 ends: record it for longer", "the track of object 3 ends: record it for longer"),
         ("only_a_bound", None, "a map that goes on, or a longer --sensor-range of check; for a duration, a log that begins earlier"),
         ("null_value", None, "what is NULL, or has no row, in the rows that it was judged on"),
     ],
 )  # fmt: skip
-def test_the_advice_of_the_cause_is_repeated(code: str, asked: str | None, told: str) -> None:
-    assert remedy(code, None, "osi-mcap", asked).startswith(told)
+def test_the_advice_of_the_cause_is_repeated(code: str, cause_advice: str | None, advice: str) -> None:
+    assert remedy(code, None, "osi-mcap", cause_advice).startswith(advice)
 
 
 def test_an_ego_that_is_no_vehicle_is_not_the_maps_fault() -> None:

@@ -28,8 +28,8 @@ from drivelint.errors import TraceError
 from drivelint.formats import registry
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
-from tests.drawn import drawn
 from tests.guide.blocks import PAGES, Block, blocks
+from tests.scene_drives import scene_drive
 from tests.scenes import derived, drive, moving, road, times
 from tests.shared_data import ROOT, shared
 
@@ -94,10 +94,10 @@ def run_block(block: Block, folder: Path) -> str:
     return printed
 
 
-def missing(shown: str, printed: str) -> list[str]:
+def missing_lines(text: str, output: str) -> list[str]:
     """Return the lines that were not printed, or not in this order."""
-    rest = iter(line.rstrip() for line in printed.splitlines())
-    return [line for line in shown.splitlines() if line != "..." and line.rstrip() not in rest]
+    rest = iter(line.rstrip() for line in output.splitlines())
+    return [line for line in text.splitlines() if line != "..." and line.rstrip() not in rest]
 
 
 @pytest.mark.slow
@@ -113,7 +113,7 @@ def test_marked_blocks_run(name: str, folder: Path) -> None:
             except pytest.skip.Exception as reason:
                 skipped.append(str(reason))
         elif block.word == "prints" and name != "README.md":
-            assert missing(block.body, printed) == []
+            assert missing_lines(block.body, printed) == []
         elif block.word == "file" and not (ROOT / block.argument).exists() and block.argument != "drivelint.toml":
             (folder / block.argument).parent.mkdir(parents=True, exist_ok=True)
             (folder / block.argument).write_text(block.body, encoding="utf-8")
@@ -137,7 +137,7 @@ def test_the_condition_with_shapes_says_what_the_columns_of_pair_say() -> None:
     """On a straight road: an object ahead in the ego's way is in the danger space if its rear is nearer than the ego can stop."""
     (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition")
     way, t = road(), times(6.0)
-    actors = [moving("ego", way, t, 50 + 12 * t, way.own), moving("slower", way, t, 105 + 4 * t, way.own)]
+    actors = [moving("ego", way, t, 50 + 12 * t, way.ego_d), moving("slower", way, t, 105 + 4 * t, way.ego_d)]
     con = derived(drive(actors, way.environment), tables=["pair", "ego_state"])
     found = con.execute(f"""
         SELECT c.holds, p.rear_s_m - e.front_s_m > stopping_distance_m(e.speed_mps) OR p.front_s_m < e.front_s_m AS is_clear
@@ -153,7 +153,7 @@ def test_the_condition_about_lights_says_what_they_show(tmp_path: Path) -> None:
     (block,) = (block for page in PAGES for block in blocks(page) if block.mark == "condition: lights")
     found = {}
     for name in ("green", "red", "unknown"):
-        made = drawn("crossroads", "red" if name == "red" else "green", tmp_path / name)
+        made = scene_drive("crossroads", "red" if name == "red" else "green", tmp_path / name)
         if name == "unknown":
             states = made.trace.tables["signal_state"]
             made.trace.tables["signal_state"] = states.set_column(3, "state", pa.nulls(len(states), pa.string()))
@@ -180,7 +180,7 @@ def test_readmes_command_prints_what_readme_shows(folder: Path) -> None:
     done = run(check.removeprefix(".venv/bin/"), folder)
     (shown,) = (block.body for block in readme if block.word == "prints")
     assert done.returncode == 1, done.stderr
-    assert missing(shown, done.stdout) == []
+    assert missing_lines(shown, done.stdout) == []
     assert (folder / "demo" / "results" / "report.html").is_file()
 
 

@@ -16,7 +16,7 @@ ROWS = [
     if line.startswith("|") and not line.startswith("|---")
 ]
 OF_A_TOOL = re.compile(r"^(?P<tool>[\w-]+)(?: (?P<version>\d+(?:\.\d+)+))?")
-OWN = {"the"}
+NO_TOOLS = {"the"}
 """The chord is no other tool's."""
 
 
@@ -32,7 +32,7 @@ def test_the_test_of_a_row_names_tool_and_version(row: list[str]) -> None:
     assert found is not None
     path = ROOT / row[4].strip("`")
     assert path.exists()
-    if found["tool"] in OWN:
+    if found["tool"] in NO_TOOLS:
         return
     assert found["version"], "a difference without a version cannot be looked up"
     text = path.read_text(encoding="utf-8").lower()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from drivelint.incident import IncidentRequest, judge_parties_again
-from tests.explain.checked import check
+from tests.explain.overtake_check import check
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -27,7 +27,7 @@ from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions
 from drivelint.run import check as run_check
 from drivelint.sql.store import table_with_owner_id
-from tests.explain.checked import OVERTAKE
+from tests.explain.overtake_check import OVERTAKE
 from tests.shared_data import shared
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from drivelint.incident.sheet import template_values
 from drivelint.pack import sheets
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
-from tests.explain.checked import OVERTAKE
+from tests.explain.overtake_check import OVERTAKE
 from tests.incident.recorded import closing_by_places, fixture_log, gap
 
 if TYPE_CHECKING:

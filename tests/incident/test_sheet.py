@@ -38,7 +38,7 @@ from drivelint.report.progress import Silent
 from drivelint.result.load import load_result
 from drivelint.run import CheckOptions
 from drivelint.run import check as run_check
-from tests.explain.checked import OVERTAKE, check
+from tests.explain.overtake_check import OVERTAKE, check
 from tests.incident.recorded import carla_log, closing_by_places, fixture_log, gap
 from tests.shared_data import shared
 

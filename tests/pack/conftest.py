@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 
-from tests.explain.checked import OVERTAKE, check
+from tests.explain.overtake_check import OVERTAKE, check
 from tests.pack.packed import make_key, make_pack
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from drivelint import demo
 from drivelint.pack import VerifyRequest, verify
 from drivelint.result.counts import one_finding_per_event
 from tests.demo.overtakes import PROFILES
-from tests.explain.checked import check
+from tests.explain.overtake_check import check
 from tests.pack.packed import make_pack, numbers_without_drivelint
 from tests.shared_data import shared
 

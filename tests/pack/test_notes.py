@@ -12,7 +12,7 @@ from drivelint.pack import VerifyRequest, verify
 from drivelint.report.outputs import write
 from drivelint.resources import folder
 from drivelint.result.gate import Gate
-from tests.explain.checked import OVERTAKE, check
+from tests.explain.overtake_check import OVERTAKE, check
 from tests.pack.packed import make_pack, sign_anew
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from drivelint import cli
 from drivelint.errors import UsageError
 from drivelint.pack import PackRequest, VerifyRequest, signature, verify, write_pack
 from drivelint.pack.finding_sql import param_literal
-from tests.explain.checked import OVERTAKE, check
+from tests.explain.overtake_check import OVERTAKE, check
 from tests.pack.packed import make_key, make_pack, numbers_without_drivelint, statement_of
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from rich.console import Console
 from drivelint.explain import ExplainRequest, Explanation, MeasurementErrors, explain
 from drivelint.explain.text import render
 from drivelint.pack import VerifyRequest, verify
-from tests.explain.checked import OVERTAKE, check
+from tests.explain.overtake_check import OVERTAKE, check
 from tests.pack.packed import make_pack
 
 if TYPE_CHECKING:

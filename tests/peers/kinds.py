@@ -38,11 +38,11 @@ def load_kinds() -> list[Kind]:
     ]
 
 
-def kinds(pair: Pair, known: Sequence[Kind]) -> list[str]:
+def kinds(pair: Pair, known_kinds: Sequence[Kind]) -> list[str]:
     """Return the kinds that explain a difference, most frequent first; none unless every step of the breach is of one of them."""
-    breach = "peer" if pair.theirs == "broken" else "ours"
+    breach = "peer" if pair.peer_result == "broken" else "ours"
     steps = pair.breaks if breach == "peer" else pair.fails
-    able = [kind for kind in known if pair.rule in kind.rules and kind.breach == breach]
+    able = [kind for kind in known_kinds if pair.rule in kind.rules and kind.breach == breach]
     counts = dict.fromkeys((kind.name for kind in able), 0)
     for step in steps:
         fitting = [kind.name for kind in able if FACTS[kind.name](pair, step)]
@@ -139,9 +139,9 @@ def _never_stood(pair: Pair, step: int) -> bool:
     return all(pair.steps[k]["v_mps"] >= 0.1 for k in near if k in pair.steps)
 
 
-def _front_ahead_m(other: Row) -> float:
+def _front_ahead_m(other_vehicle: Row) -> float:
     """Return how far the front of another vehicle is ahead of the ego's."""
-    return float(other["gap_m"] + other["length_m"])
+    return float(other_vehicle["gap_m"] + other_vehicle["length_m"])
 
 
 def _passes(pair: Pair, vehicle: str) -> bool:

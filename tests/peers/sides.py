@@ -35,9 +35,9 @@ RANK = ("fail", "unknown", "pass", "not_applicable")
 
 @dataclass
 class Pair:
-    """A rule and a vehicle of a scenario. `ours`: the worst verdict, None without one. `theirs`: kept or broken, None without a result.
+    """A rule and a vehicle of a scenario. `our_verdict`: the worst one, None without one. `peer_result`: kept or broken, None without one.
 
-    `fails` and `breaks` are the time steps at which the rule is broken for us and for the peer, `judged` how many steps ours has judged.
+    `fails` and `breaks` are the time steps at which the rule is broken for us and for the peer, `n_judged` how many steps ours has judged.
     By step: `values` is what ours has measured, `needs` the deceleration by which, for us, somebody in the way asks the ego to brake, and
     `steps` what the peer sees.
     """
@@ -45,11 +45,11 @@ class Pair:
     scenario: str
     rule: str
     vehicle: str
-    ours: str | None
-    theirs: str | None
+    our_verdict: str | None
+    peer_result: str | None
     reason: str | None = None
     fails: tuple[int, ...] = ()
-    judged: int = 0
+    n_judged: int = 0
     breaks: tuple[int, ...] = ()
     last_step: int | None = None
     dt_s: float = 0.1
@@ -59,15 +59,15 @@ class Pair:
 
     @property
     def ours_decides(self) -> bool:
-        return self.ours in ("pass", "fail", "not_applicable")
+        return self.our_verdict in ("pass", "fail", "not_applicable")
 
     @property
     def both_decide(self) -> bool:
-        return self.ours_decides and self.theirs is not None
+        return self.ours_decides and self.peer_result is not None
 
     @property
     def differ(self) -> bool:
-        return self.both_decide and (self.ours == "fail") != (self.theirs == "broken")
+        return self.both_decide and (self.our_verdict == "fail") != (self.peer_result == "broken")
 
 
 def _limited() -> None:
@@ -107,35 +107,41 @@ def our_result(scenario: Path, kind: str, out: Path) -> duckdb.DuckDBPyConnectio
     return con
 
 
-def pairs(scenario: Path, kind: str, ours: duckdb.DuckDBPyConnection, theirs: dict[str, Any] | str) -> list[Pair]:
+def pairs(
+    scenario: Path, kind: str, our_database: duckdb.DuckDBPyConnection, peer_answer: dict[str, Any] | str
+) -> list[Pair]:
     """Return the pairs of a scenario; without a result of the peer each of our vehicles has pairs that it does not decide."""
-    told = {} if isinstance(theirs, str) else theirs
+    told = {} if isinstance(peer_answer, str) else peer_answer
     dt_s = told.get("dt_s", 0.1)
-    rows = ours.execute(
+    rows = our_database.execute(
         """
         SELECT v.ego_id, v.rule_id, list({'verdict': verdict, 'reason': coalesce(cause_code, reason_code)}) AS found
         FROM verdicts v GROUP BY ALL ORDER BY ALL
         """
     ).fetchall()
-    failed = ours.execute(
+    failed = our_database.execute(
         "SELECT ego_id, rule_id, list(t_s ORDER BY t_s) FROM margins WHERE margin < 0 GROUP BY ALL"
     ).fetchall()
     measured: dict[tuple[str, str], dict[int, float]] = {}
-    for ego, rule, at_s, value in ours.execute(
+    for ego, rule, at_s, value in our_database.execute(
         "SELECT ego_id, rule_id, t_s, observed FROM margins WHERE observed IS NOT NULL"
     ).fetchall():
         measured.setdefault((ego, rule), {})[round(at_s / dt_s)] = value
     needs: dict[str, dict[int, float]] = {}
-    if ours.execute("SELECT 1 FROM duckdb_tables() WHERE database_name = 'kept' AND table_name = 'in_way'").fetchone():
+    if our_database.execute(
+        "SELECT 1 FROM duckdb_tables() WHERE database_name = 'kept' AND table_name = 'in_way'"
+    ).fetchone():
         query = """
             SELECT w.ego_id, (w.t_ns - c.t_begin_ns) / 1e9, w.need_mps2
             FROM kept.in_way w CROSS JOIN (SELECT min(t_start_ns) AS t_begin_ns FROM kept.clock) c WHERE w.need_mps2 > 0
         """
-        for ego, at_s, need in ours.execute(query).fetchall():
+        for ego, at_s, need in our_database.execute(query).fetchall():
             needs.setdefault(ego, {})[round(at_s / dt_s)] = need
-    counts = ours.execute("SELECT ego_id, rule_id, sum(n_judged)::INTEGER FROM verdicts GROUP BY ALL").fetchall()
-    judged = {(ego, rule): n for ego, rule, n in counts}
-    moments = ours.execute(
+    counts = our_database.execute(
+        "SELECT ego_id, rule_id, sum(n_judged)::INTEGER FROM verdicts GROUP BY ALL"
+    ).fetchall()
+    n_judged = {(ego, rule): n for ego, rule, n in counts}
+    moments = our_database.execute(
         "SELECT ego_id, rule_id, list(t_worst_s) FROM verdicts WHERE verdict = 'fail' GROUP BY ALL"
     ).fetchall()
     times: dict[tuple[str, str], list[float]] = {}
@@ -157,11 +163,11 @@ def pairs(scenario: Path, kind: str, ours: duckdb.DuckDBPyConnection, theirs: di
                     scenario.stem,
                     rule,
                     vehicle,
-                    ours=worst["verdict"] if worst else None,
-                    theirs=None if not values else "broken" if breaks else "kept",
+                    our_verdict=worst["verdict"] if worst else None,
+                    peer_result=None if not values else "broken" if breaks else "kept",
                     reason=worst["reason"] if worst and worst["verdict"] == "unknown" else None,
                     fails=tuple(sorted({round(at / dt_s) for at in times.get((vehicle, rule), [])})),
-                    judged=judged.get((vehicle, rule)) or 0,
+                    n_judged=n_judged.get((vehicle, rule)) or 0,
                     breaks=breaks,
                     last_step=first + len(values) if values else None,
                     dt_s=dt_s,

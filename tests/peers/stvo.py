@@ -48,18 +48,18 @@ def compared(python: Path, folder: Path, scenarios: Sequence[Path]) -> tuple[lis
     return found, without
 
 
-def table(found: Iterable[Pair], known: Sequence[Kind]) -> list[Row]:
+def table(compared_pairs: Iterable[Pair], known_kinds: Sequence[Kind]) -> list[Row]:
     """Return the figures by rule, and their sums."""
     by_rule: dict[str, list[Pair]] = {}
-    for pair in found:
+    for pair in compared_pairs:
         by_rule.setdefault(pair.rule + (" with a limit" if "+" in pair.scenario else ""), []).append(pair)
     by_rule = dict(sorted(by_rule.items()))
     by_rule["all"] = [pair for several in by_rule.values() for pair in several]
     rows = []
     for rule, several in by_rule.items():
-        decided = [pair for pair in several if pair.theirs]
+        decided = [pair for pair in several if pair.peer_result]
         differ = [pair for pair in decided if pair.differ]
-        explained = sum(bool(kinds(pair, known)) for pair in differ)
+        explained = sum(bool(kinds(pair, known_kinds)) for pair in differ)
         both = sum(pair.both_decide for pair in decided)
         rows.append(
             Row(
@@ -67,7 +67,7 @@ def table(found: Iterable[Pair], known: Sequence[Kind]) -> list[Row]:
                 len(several),
                 len(decided),
                 both,
-                sum(not pair.ours_decides and bool(pair.judged) for pair in decided),
+                sum(not pair.ours_decides and bool(pair.n_judged) for pair in decided),
                 both - len(differ),
                 explained,
                 len(differ) - explained,
@@ -76,10 +76,10 @@ def table(found: Iterable[Pair], known: Sequence[Kind]) -> list[Row]:
     return rows
 
 
-def report(found: Sequence[Pair], without: dict[str, str]) -> tuple[str, bool]:
+def report(compared_pairs: Sequence[Pair], without: dict[str, str]) -> tuple[str, bool]:
     """Return the text of a comparison, and whether its bars are met: 2 % unexplained, 70 % decided."""
-    known = load_kinds()
-    rows = table(found, known)
+    known_kinds = load_kinds()
+    rows = table(compared_pairs, known_kinds)
     lines = [
         f"{'rule':18}{'pairs':>7}{'peer':>7}{'both':>7}{'in part':>9}{'equal':>7}{'explained':>11}{'unexplained':>13}"
     ]
@@ -92,28 +92,32 @@ def report(found: Sequence[Pair], without: dict[str, str]) -> tuple[str, bool]:
     share_decided = total.ours_too / max(total.theirs, 1)
     lines += ["", f"differ without an explanation: {share_unexplained:.1%} of the pairs that both decide (at most 2 %)"]
     lines += [f"ours decides {share_decided:.1%} of the pairs that the peer decides (at least 70 %)"]
-    recorded = [pair for pair in found if pair.theirs and "+" not in pair.scenario]
+    recorded = [pair for pair in compared_pairs if pair.peer_result and "+" not in pair.scenario]
     share_recorded = sum(pair.ours_decides for pair in recorded) / max(len(recorded), 1)
-    share_judged = sum(pair.ours_decides or pair.judged > 0 for pair in recorded) / max(len(recorded), 1)
+    share_judged = sum(pair.ours_decides or pair.n_judged > 0 for pair in recorded) / max(len(recorded), 1)
     lines += [
         f"  without the limits that were added: {share_recorded:.1%}; or at least a part of the drive: {share_judged:.1%}"
     ]
     lines += ["", "differences:"]
-    texts = {kind.name: kind for kind in known}
-    counts = Counter((pair.rule, (kinds(pair, known) or ["UNEXPLAINED"])[0]) for pair in found if pair.differ)
+    texts = {kind.name: kind for kind in known_kinds}
+    counts = Counter(
+        (pair.rule, (kinds(pair, known_kinds) or ["UNEXPLAINED"])[0]) for pair in compared_pairs if pair.differ
+    )
     for (rule, name), n in sorted(counts.items()):
         lines.append(
             f"  {rule} {name}: {n}" + (f"; {texts[name].explanation} ({texts[name].clause})" if name in texts else "")
         )
     lines += [
         f"  UNEXPLAINED {pair.scenario} {pair.rule} vehicle {pair.vehicle}: "
-        f"ours {pair.ours} at {pair.fails[:5]}, peer {pair.theirs} at {pair.breaks[:5]}"
-        for pair in found
-        if pair.differ and not kinds(pair, known)
+        f"ours {pair.our_verdict} at {pair.fails[:5]}, peer {pair.peer_result} at {pair.breaks[:5]}"
+        for pair in compared_pairs
+        if pair.differ and not kinds(pair, known_kinds)
     ]
     lines += ["", "ours is unknown where the peer decides, by reason:"]
     unknown = Counter(
-        (pair.rule, pair.reason or "no verdict") for pair in found if pair.theirs and not pair.ours_decides
+        (pair.rule, pair.reason or "no verdict")
+        for pair in compared_pairs
+        if pair.peer_result and not pair.ours_decides
     )
     lines += [f"  {rule} {reason}: {n}" for (rule, reason), n in sorted(unknown.items())]
     lines += ["", "no result of the peer:", *(f"  {name}: {said}" for name, said in sorted(without.items()))]

@@ -56,7 +56,7 @@ def _number(value: Any) -> float | None:
     return None if value is None or not math.isfinite(value) else round(float(value), 6)
 
 
-def _others(world: Any, ego: Any, step: int) -> list[dict[str, Any]]:
+def _other_vehicles(world: Any, ego: Any, step: int) -> list[dict[str, Any]]:
     """Return the vehicles near the ego at a step, in the ego's lane as the peer sees it; `gap_m` is from bumper to bumper."""
     lane = ego.lane_at_time_step(step)
     seen = []
@@ -99,7 +99,7 @@ def _steps(world: Any, ego: Any) -> list[dict[str, Any]]:
                     "d_m": _number(ego.get_lat_state(step).d),
                     "length_m": _number(ego.shape.length),
                     "lanes": len(ego.lanelet_ids_at_time_step(step)),
-                    "others": _others(world, ego, step),
+                    "others": _other_vehicles(world, ego, step),
                 }
             )
         except Exception as problem:  # noqa: BLE001 - said in the file

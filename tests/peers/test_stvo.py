@@ -18,10 +18,10 @@ from .stvo import report, table
 if TYPE_CHECKING:
     from pathlib import Path
 
-KNOWN = load_kinds()
+KNOWN_KINDS = load_kinds()
 
 
-def other(gap_m: float, v_mps: float = 10.0, **more: Any) -> dict[str, Any]:
+def vehicle_ahead(gap_m: float, v_mps: float = 10.0, **more: Any) -> dict[str, Any]:
     """A vehicle ahead in the ego's lane, 4 m long as the ego."""
     return {
         "id": "o",
@@ -36,36 +36,46 @@ def other(gap_m: float, v_mps: float = 10.0, **more: Any) -> dict[str, Any]:
     }
 
 
-def row(v_mps: float, *others: dict[str, Any], a_mps2: float = 0.0) -> dict[str, Any]:
-    return {"v_mps": v_mps, "a_mps2": a_mps2, "d_m": 0.0, "lanes": 1, "others": list(others)}
+def row(v_mps: float, *other_vehicles: dict[str, Any], a_mps2: float = 0.0) -> dict[str, Any]:
+    return {"v_mps": v_mps, "a_mps2": a_mps2, "d_m": 0.0, "lanes": 1, "others": list(other_vehicles)}
 
 
-def pair(rule: str, ours: str | None, theirs: str | None, **more: Any) -> Pair:
-    return Pair("scenario", rule, "7", ours, theirs, **more)
+def pair(rule: str, our_verdict: str | None, peer_result: str | None, **more: Any) -> Pair:
+    return Pair("scenario", rule, "7", our_verdict, peer_result, **more)
 
 
 def test_every_kind_is_computed_and_belongs_to_a_rule() -> None:
-    assert {kind.name for kind in KNOWN} == set(FACTS)
+    assert {kind.name for kind in KNOWN_KINDS} == set(FACTS)
     rules = set(load_rules())
-    assert {rule for kind in KNOWN for rule in kind.rules} <= rules
+    assert {rule for kind in KNOWN_KINDS for rule in kind.rules} <= rules
     assert {rule for twins in TWINS.values() for rule in twins} <= rules
-    assert {kind.breach for kind in KNOWN} == {"peer", "ours"}
+    assert {kind.breach for kind in KNOWN_KINDS} == {"peer", "ours"}
 
 
 # 20 m/s behind 10 m/s: 6 m of reaction in 0.3 s and 20 m of braking, less 4.76 m: 21.24 m.
 @pytest.mark.parametrize(
     ("name", "steps", "more", "is_so"),
     [
-        ("swaying_cuts_in", {0: row(20, other(21)), 9: row(20, other(21))}, {}, True),
-        ("swaying_cuts_in", {0: row(20, other(21, same_lane=False)), 9: row(20, other(21))}, {}, False),
-        ("swaying_cuts_in", {9: row(20, other(22))}, {}, False),
+        ("swaying_cuts_in", {0: row(20, vehicle_ahead(21)), 9: row(20, vehicle_ahead(21))}, {}, True),
+        ("swaying_cuts_in", {0: row(20, vehicle_ahead(21, same_lane=False)), 9: row(20, vehicle_ahead(21))}, {}, False),
+        ("swaying_cuts_in", {9: row(20, vehicle_ahead(22))}, {}, False),
         ("last_step", {9: row(20)}, {"last_step": 9}, True),
         ("last_step", {9: row(20)}, {"last_step": 10}, False),
-        ("longer_reaction", {9: row(20, other(22))}, {}, True),
-        ("longer_reaction", {9: row(20, other(21))}, {}, False),
-        ("reason_a_moment_ago", {0: row(20, other(21)), 9: row(20, other(60), a_mps2=-3)}, {}, True),
-        ("reason_a_moment_ago", {0: row(20, other(60, a_mps2=-1.5)), 9: row(20, other(60), a_mps2=-3)}, {}, True),
-        ("reason_a_moment_ago", {0: row(20, other(60, a_mps2=-0.5)), 9: row(20, other(60), a_mps2=-3)}, {}, False),
+        ("longer_reaction", {9: row(20, vehicle_ahead(22))}, {}, True),
+        ("longer_reaction", {9: row(20, vehicle_ahead(21))}, {}, False),
+        ("reason_a_moment_ago", {0: row(20, vehicle_ahead(21)), 9: row(20, vehicle_ahead(60), a_mps2=-3)}, {}, True),
+        (
+            "reason_a_moment_ago",
+            {0: row(20, vehicle_ahead(60, a_mps2=-1.5)), 9: row(20, vehicle_ahead(60), a_mps2=-3)},
+            {},
+            True,
+        ),
+        (
+            "reason_a_moment_ago",
+            {0: row(20, vehicle_ahead(60, a_mps2=-0.5)), 9: row(20, vehicle_ahead(60), a_mps2=-3)},
+            {},
+            False,
+        ),
         ("must_brake", {9: row(20)}, {"needs": {9: 2.0}}, True),
         ("must_brake", {9: row(20)}, {"needs": {9: 1.9}}, False),
         ("peak_of_samples", {9: row(20, a_mps2=-3)}, {"values": {9: -1.9}}, True),
@@ -73,27 +83,47 @@ def test_every_kind_is_computed_and_belongs_to_a_rule() -> None:
         ("peak_of_samples", {9: row(20, a_mps2=-3)}, {}, False),
         ("end_of_track", {8: row(20), 9: row(20)}, {}, True),
         ("end_of_track", {0: row(20), 9: row(20), 30: row(20)}, {}, False),
-        ("stopped_behind_a_queue", {7: row(1, other(5, 1)), 8: row(0, other(5, 1)), 9: row(0)}, {}, True),
-        ("stopped_behind_a_queue", {7: row(1, other(5, 3)), 8: row(0, other(5, 3)), 9: row(0)}, {}, False),
+        (
+            "stopped_behind_a_queue",
+            {7: row(1, vehicle_ahead(5, 1)), 8: row(0, vehicle_ahead(5, 1)), 9: row(0)},
+            {},
+            True,
+        ),
+        (
+            "stopped_behind_a_queue",
+            {7: row(1, vehicle_ahead(5, 3)), 8: row(0, vehicle_ahead(5, 3)), 9: row(0)},
+            {},
+            False,
+        ),
         ("rolls", {8: row(0.2), 9: row(0.2)}, {}, True),
         ("rolls", {8: row(0.0), 9: row(0.2)}, {}, False),
-        ("alongside_only", {8: row(20, other(0, d_m=3.5)), 9: row(20, other(-2, d_m=3.5))}, {}, True),
-        ("alongside_only", {8: row(20, other(0, d_m=3.5)), 9: row(20, other(-5, d_m=3.5))}, {}, False),
-        ("fewer_than_three_ahead", {9: row(2, other(5, 2), other(15, 2), other(25, 9))}, {}, True),
-        ("fewer_than_three_ahead", {9: row(2, other(5, 2), other(15, 2), other(25, 2))}, {}, False),
-        ("faster_than_walking_pace", {9: row(2, other(5, 3))}, {}, True),
-        ("faster_than_walking_pace", {9: row(2, other(5, 2))}, {}, False),
+        ("alongside_only", {8: row(20, vehicle_ahead(0, d_m=3.5)), 9: row(20, vehicle_ahead(-2, d_m=3.5))}, {}, True),
+        ("alongside_only", {8: row(20, vehicle_ahead(0, d_m=3.5)), 9: row(20, vehicle_ahead(-5, d_m=3.5))}, {}, False),
+        (
+            "fewer_than_three_ahead",
+            {9: row(2, vehicle_ahead(5, 2), vehicle_ahead(15, 2), vehicle_ahead(25, 9))},
+            {},
+            True,
+        ),
+        (
+            "fewer_than_three_ahead",
+            {9: row(2, vehicle_ahead(5, 2), vehicle_ahead(15, 2), vehicle_ahead(25, 2))},
+            {},
+            False,
+        ),
+        ("faster_than_walking_pace", {9: row(2, vehicle_ahead(5, 3))}, {}, True),
+        ("faster_than_walking_pace", {9: row(2, vehicle_ahead(5, 2))}, {}, False),
         ("border_within_75_cm", {9: row(2)}, {"values": {9: 0.5}}, True),
         ("border_within_75_cm", {9: row(2)}, {"values": {9: 0.8}}, False),
-        ("slow_vehicle_beside", {9: row(9, other(20, 9, same_lane=False, d_m=3.5))}, {}, True),
-        ("slow_vehicle_beside", {9: row(9, other(20, 9.1, same_lane=False, d_m=3.5))}, {}, False),
-        ("slow_vehicle_beside", {9: row(9, other(31, 9, same_lane=False, d_m=3.5))}, {}, False),
-        ("slow_vehicle_beside", {9: row(9, other(-39, 9, same_lane=False, d_m=3.5))}, {}, False),
-        ("slow_vehicle_beside", {9: row(9, other(20, 9, same_lane=False, d_m=16))}, {}, False),
-        ("slow_vehicle_beside", {9: row(9, other(40, 9))}, {}, True),
-        ("time_to_speed_up", {-91: row(9, other(40, 9)), 9: row(9)}, {}, True),
-        ("time_to_speed_up", {-92: row(9, other(40, 9)), 9: row(9)}, {}, False),
-        ("time_to_speed_up", {-91: row(9, other(40, 9.1)), 9: row(9)}, {}, False),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(20, 9, same_lane=False, d_m=3.5))}, {}, True),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(20, 9.1, same_lane=False, d_m=3.5))}, {}, False),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(31, 9, same_lane=False, d_m=3.5))}, {}, False),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(-39, 9, same_lane=False, d_m=3.5))}, {}, False),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(20, 9, same_lane=False, d_m=16))}, {}, False),
+        ("slow_vehicle_beside", {9: row(9, vehicle_ahead(40, 9))}, {}, True),
+        ("time_to_speed_up", {-91: row(9, vehicle_ahead(40, 9)), 9: row(9)}, {}, True),
+        ("time_to_speed_up", {-92: row(9, vehicle_ahead(40, 9)), 9: row(9)}, {}, False),
+        ("time_to_speed_up", {-91: row(9, vehicle_ahead(40, 9.1)), 9: row(9)}, {}, False),
         ("time_to_speed_up", {-141: row(0.5), 9: row(9)}, {}, True),
         ("time_to_speed_up", {-142: row(0.5), 9: row(9)}, {}, False),
         ("time_to_speed_up", {8: row(0.5), 9: row(0.5)}, {}, False),
@@ -118,20 +148,20 @@ def test_a_german_sign_is_known_to_the_peer(scenario: str) -> None:
 def test_a_difference_is_explained_only_if_each_step_of_the_breach_is() -> None:
     steps = {k: row(20, a_mps2=-3) for k in range(30)}
     filtered = pair("stvo.rg2", "pass", "broken", breaks=(10, 11), values={10: -1.9, 11: -1.9}, steps=steps)
-    assert kinds(filtered, KNOWN) == ["peak_of_samples"]
+    assert kinds(filtered, KNOWN_KINDS) == ["peak_of_samples"]
     filtered.values[11] = -2.5
-    assert kinds(filtered, KNOWN) == []
+    assert kinds(filtered, KNOWN_KINDS) == []
     # The kind is one of breaches of the peer, and of this rule.
-    assert kinds(pair("stvo.rg2", "fail", "kept", fails=(10,), values={10: -1.9}, steps=steps), KNOWN) == []
-    assert kinds(pair("stvo.rg1", "pass", "broken", breaks=(10,), values={10: -1.9}, steps=steps), KNOWN) == []
+    assert kinds(pair("stvo.rg2", "fail", "kept", fails=(10,), values={10: -1.9}, steps=steps), KNOWN_KINDS) == []
+    assert kinds(pair("stvo.rg1", "pass", "broken", breaks=(10,), values={10: -1.9}, steps=steps), KNOWN_KINDS) == []
 
 
 def test_the_figures_and_the_bars() -> None:
     found = [pair("stvo.rg3", "pass", "kept") for _ in range(60)]
-    found += [pair("stvo.rg3", "unknown", "kept", reason="no_limit", judged=3), pair("stvo.rg3", "pass", None)]
+    found += [pair("stvo.rg3", "unknown", "kept", reason="no_limit", n_judged=3), pair("stvo.rg3", "pass", None)]
     found += [pair("stvo.rg3", "pass", "broken", breaks=(9,), values={9: 1.0}, steps={9: row(20)})]
     found += [pair("stvo.rg3", "not_applicable", "broken", breaks=(9,), steps={9: row(20)})]
-    assert table(found, KNOWN)[-1] == ("all", 64, 63, 62, 1, 60, 1, 1)
+    assert table(found, KNOWN_KINDS)[-1] == ("all", 64, 63, 62, 1, 60, 1, 1)
     text, is_met = report(found, {"s": "exit 1"})
     assert is_met
     assert "stvo.rg3 no_limit: 1" in text
@@ -163,7 +193,7 @@ def test_steps_and_verdicts_of_both_sides_meet(tmp_path: Path) -> None:
     made = {each.rule: each for each in pairs(tmp_path / "s.xml", "interstate", ours, told)}
     assert set(made) == set(TWINS["interstate"])
     first, second = made["stvo.rg1"], made["stvo.rg2"]
-    assert (first.ours, first.reason, first.judged, first.theirs, first.breaks) == (
+    assert (first.our_verdict, first.reason, first.n_judged, first.peer_result, first.breaks) == (
         "unknown",
         "object_lost",
         9,
@@ -171,15 +201,15 @@ def test_steps_and_verdicts_of_both_sides_meet(tmp_path: Path) -> None:
         (4,),
     )
     assert (first.last_step, list(first.steps), first.differ) == (6, [3], False)
-    assert (second.ours, second.fails, second.theirs, second.values, second.differ) == (
+    assert (second.our_verdict, second.fails, second.peer_result, second.values, second.differ) == (
         "fail",
         (8,),
         "kept",
         {8: -3.0, 7: -1.0},
         True,
     )
-    assert (made["stvo.ri3"].ours, made["stvo.ri3"].theirs) == ("not_applicable", None)
-    assert {each.theirs for each in pairs(tmp_path / "s.xml", "interstate", ours, "exit 1")} == {None}
+    assert (made["stvo.ri3"].our_verdict, made["stvo.ri3"].peer_result) == ("not_applicable", None)
+    assert {each.peer_result for each in pairs(tmp_path / "s.xml", "interstate", ours, "exit 1")} == {None}
 
 
 @pytest.mark.parametrize(("content", "kinds_of_scenario"), [("", 1), ('<intersection id="1"/>', 2)])

@@ -13,7 +13,7 @@ from drivelint.reasons import reason_text
 from drivelint.reasons.reason_text import ReasonText
 from drivelint.resources import folder
 
-OWN = {
+OWN_TEXTS = {
     "came_by": ReasonText(
         "{object_id} came by with {room_m:.2f} m between[, behind {behind_id}]", "record it until {t_ns}"
     ),
@@ -36,26 +36,31 @@ def con() -> duckdb.DuckDBPyConnection:
 def test_arguments_are_filled_in_and_times_are_told_from_the_start(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'came_by', {'object_id': 'o{1}', 'room_m': 1.256, 'behind_id': NULL, 't_ns': 7_500_000_000}")
     assert (
-        reason_text.sentence(reason, 2_000_000_000, OWN) == "o{1} came by with 1.26 m between: record it until 5.500 s"
+        reason_text.sentence(reason, 2_000_000_000, OWN_TEXTS)
+        == "o{1} came by with 1.26 m between: record it until 5.500 s"
     )
     reason = why(con, "'came_by', {'object_id': 'o', 'room_m': 1, 'behind_id': 'p', 't_ns': 0}")
-    assert reason_text.sentence(reason, 0, OWN) == "o came by with 1.00 m between, behind p: record it until 0.000 s"
+    assert (
+        reason_text.sentence(reason, 0, OWN_TEXTS) == "o came by with 1.00 m between, behind p: record it until 0.000 s"
+    )
 
 
 def test_what_is_null_is_a_question_mark(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'came_by', {'object_id': NULL, 'room_m': NULL::DOUBLE}")
-    assert reason_text.sentence(reason, 0, OWN) == "? came by with ? m between: record it until ?"
+    assert reason_text.sentence(reason, 0, OWN_TEXTS) == "? came by with ? m between: record it until ?"
 
 
 def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
     reason = why(con, "'stood', {'braked': why('came_by', {'object_id': 'o', 'room_m': 1, 't_ns': 0})}")
     assert (
-        reason_text.sentence(reason, 0, OWN)
+        reason_text.sentence(reason, 0, OWN_TEXTS)
         == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
     )
     code, arguments = reason_text.parse_reason(reason)
-    assert reason_text.sentence_if_it_has_advice(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
-    assert reason_text.sentence_if_it_has_advice("stood", {"braked": "it"}, 0, OWN) is None
+    assert reason_text.sentence_if_it_has_advice(code, arguments, 0, OWN_TEXTS) == reason_text.sentence(
+        reason, 0, OWN_TEXTS
+    )
+    assert reason_text.sentence_if_it_has_advice("stood", {"braked": "it"}, 0, OWN_TEXTS) is None
     assert reason_text.code_and_nested_codes(code, arguments) == {"stood", "came_by"}
 
 
@@ -96,8 +101,8 @@ def test_no_code_of_a_rule_hides_a_shared_one() -> None:
 
 
 def test_who_lacks_only_the_way_out_of_a_junction_is_not_asked_for_the_side() -> None:
-    def said(code: str) -> str:
+    def sentence_of(code: str) -> str:
         return reason_text.sentence(f'{{"code":"{code}"}}')
 
-    assert said("turn_across_unknown").endswith("across the road: record it until it has left the junction")
-    assert said("turn_side_unknown").endswith("is not known: set it with --handedness")
+    assert sentence_of("turn_across_unknown").endswith("across the road: record it until it has left the junction")
+    assert sentence_of("turn_side_unknown").endswith("is not known: set it with --handedness")

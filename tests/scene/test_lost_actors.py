@@ -14,8 +14,8 @@ from drivelint.scene import document
 from drivelint.scene.scene import MAP_FILE, scenes_of
 from tests import blinding
 from tests.blinding import EVER
-from tests.drawn import SCENES, TOPICS
-from tests.scenes import judged
+from tests.scene_drives import SCENES, TOPICS
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +37,7 @@ EVIDENCE: Final = {
 """(scene, rule) -> why the rule need not be broken nor unknown any more."""
 
 
-def drawn(scene: Scene, folder: Path) -> Drive:
+def scene_drive(scene: Scene, folder: Path) -> Drive:
     """Write the scene into the folder, and return what is read of that."""
     folder.mkdir(parents=True)
     files = scene.files()
@@ -50,7 +50,7 @@ def actors(drive: Drive) -> list[str]:
     return list(drive.trace.tables["actor"]["actor_id"].to_pylist())
 
 
-def lost(drive: Drive, others: list[str], span: Span) -> Iterator[tuple[str, Drive]]:
+def lossy_drives(drive: Drive, other_ids: list[str], span: Span) -> Iterator[tuple[str, Drive]]:
     """Return the drive with something of the others taken away, in many ways."""
     begin, end = span
     long = (begin - 0.5, end + 0.5)
@@ -65,21 +65,21 @@ def lost(drive: Drive, others: list[str], span: Span) -> Iterator[tuple[str, Dri
     }
     for what, span_lost in tracks.items():
         less = drive
-        for other in others:
+        for other in other_ids:
             less = blinding.dropped(less, other, span_lost)
         if actors(less) == actors(drive):
             yield what, less
     columns = {"heading": ("yaw_rad",), "speed": ("vx_mps", "vy_mps"), "place": ("x_m", "y_m")}
     for what, names in columns.items():
-        yield what, _without(drive, "actor_state", names, others, long)
-    size = _without(drive, "actor", ("length_m", "width_m"), others)
+        yield what, _without(drive, "actor_state", names, other_ids, long)
+    size = _without(drive, "actor", ("length_m", "width_m"), other_ids)
     yield "size", size
-    classless = _without(size, "actor", ("actor_class",), others)
-    yield "class, heading and size", _without(classless, "actor_state", ("yaw_rad",), others, long)
+    classless = _without(size, "actor", ("actor_class",), other_ids)
+    yield "class, heading and size", _without(classless, "actor_state", ("yaw_rad",), other_ids, long)
 
 
-def _without(drive: Drive, table: str, columns: tuple[str, ...], others: list[str], span: Span = EVER) -> Drive:
-    for other in others:
+def _without(drive: Drive, table: str, columns: tuple[str, ...], other_ids: list[str], span: Span = EVER) -> Drive:
+    for other in other_ids:
         drive = blinding.without(drive, table, columns, other, span)
     return drive
 
@@ -94,7 +94,7 @@ def hole(drive: Drive, span: Span) -> Drive | None:
 def breaches(drives: dict[str, Drive], fails: dict[str, set[str]]) -> list[tuple[str, Row, Span]]:
     """Return the first row of each drive that breaks a rule, and from when to when."""
     found: dict[tuple[str, str], Row] = {}
-    for row in judged(list(drives.values()), rules=sorted(set().union(*fails.values()))):
+    for row in verdict_rows(list(drives.values()), rules=sorted(set().union(*fails.values()))):
         if row["verdict"] == "fail" and row["rule_id"] in fails[row["drive_id"]]:
             found.setdefault((row["drive_id"], row["rule_id"]), row)
     rows = []
@@ -104,13 +104,13 @@ def breaches(drives: dict[str, Drive], fails: dict[str, set[str]]) -> list[tuple
     return rows
 
 
-def said(drives: list[Drive], about: dict[str, tuple[str, Span]]) -> dict[str, set[str]]:
+def verdicts_near_breach(drives: list[Drive], about: dict[str, tuple[str, Span]]) -> dict[str, set[str]]:
     """Return the verdicts of each drive on its rule about the time of its breach."""
     verdicts: dict[str, set[str]] = {drive.trace.drive_id: set() for drive in drives}
     for first in range(0, len(drives), BATCH):
         batch = drives[first : first + BATCH]
         rules = sorted({about[drive.trace.drive_id][0] for drive in batch})
-        for row in judged(batch, rules=rules):
+        for row in verdict_rows(batch, rules=rules):
             rule, (begin, end) = about[row["drive_id"]]
             untimed = rule in ANY_TIME or row["t_start_ns"] is None or row["t_end_ns"] is None
             if row["rule_id"] == rule and (
@@ -128,12 +128,12 @@ def test_what_is_broken_by_an_actor_is_broken_or_unknown_when_the_actor_is_lost(
     scenes = {text.name: scenes_of([text], file.roads)[0] for text in file.scenes if fails[text.name]}
     if not scenes:
         pytest.skip("no scene breaks a rule")
-    whole = {name: blinding.renamed(drawn(scene, tmp_path / name), name) for name, scene in scenes.items()}
+    whole = {name: blinding.renamed(scene_drive(scene, tmp_path / name), name) for name, scene in scenes.items()}
     drives: list[Drive] = []
     about: dict[str, tuple[str, Span]] = {}
     for name, row, span in breaches(whole, fails):
         others = [row["object_id"]] if row["object_id"] else [a for a in actors(whole[name]) if a != row["ego_id"]]
-        less = dict(lost(whole[name], others, span)) if others else {}
+        less = dict(lossy_drives(whole[name], others, span)) if others else {}
         if holed := hole(whole[name], span):
             less["a hole of the log"] = holed
         for what, drive in less.items():
@@ -141,6 +141,8 @@ def test_what_is_broken_by_an_actor_is_broken_or_unknown_when_the_actor_is_lost(
             about[key] = (row["rule_id"], span)
             drives.append(blinding.renamed(drive, key))
     clear = {
-        tuple(key.split("/")) for key, verdicts in said(drives, about).items() if not verdicts & {"fail", "unknown"}
+        tuple(key.split("/"))
+        for key, verdicts in verdicts_near_breach(drives, about).items()
+        if not verdicts & {"fail", "unknown"}
     }
     assert not {key for key in clear if key[:2] not in EVIDENCE}

@@ -8,13 +8,13 @@ import pytest
 
 from drivelint.formats import load_map
 from drivelint.road.map_reader import MapSource, MapTables
-from tests.scene.drawn import drawn
+from tests.scene.scene_text import scene_of
 
 SIDES = pytest.mark.parametrize(("side", "hand"), [("left", "lht"), ("right", "rht")])
 
 
 def read(folder: Path, roads: str, side: str) -> MapTables:
-    text = drawn(folder, "{lane: main 1}", roads=roads, side=side).map_text
+    text = scene_of(folder, "{lane: main 1}", roads=roads, side=side).map_text
     return load_map(MapSource("map.xodr", text.encode()))
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from drivelint.errors import UsageError
-from tests.scene.drawn import column, drawn, seconds
+from tests.scene.scene_text import column, scene_of, seconds
 
 
 def test_an_actor_follows_its_lane_round_a_bend(tmp_path: Path) -> None:
-    scene = drawn(tmp_path, "{lane: main 1, from: 290, speed: 10}")
+    scene = scene_of(tmp_path, "{lane: main 1, from: 290, speed: 10}")
     x, y = column(scene, "x_m"), column(scene, "y_m")
     assert (x[0], y[0]) == pytest.approx((290.0, -1.75))
     # after 1 s it enters the bend, 101.75 m about (300, 100); 9 s later it has turned by 90 m
@@ -24,7 +24,7 @@ def test_an_actor_follows_its_lane_round_a_bend(tmp_path: Path) -> None:
 
 
 def test_who_comes_the_other_way_drives_against_the_line(tmp_path: Path) -> None:
-    scene = drawn(tmp_path, "{lane: main -1, from: 654.33, speed: 10}")
+    scene = scene_of(tmp_path, "{lane: main -1, from: 654.33, speed: 10}")
     # 300 m, a bend of 154.33 m along this lane, and 200 m of the first straight
     assert (column(scene, "x_m")[0], column(scene, "y_m")[0]) == pytest.approx((100.0, 1.75), abs=0.01)
     assert abs(column(scene, "yaw_rad")[-1]) == pytest.approx(np.pi)
@@ -32,7 +32,7 @@ def test_who_comes_the_other_way_drives_against_the_line(tmp_path: Path) -> None
 
 def test_a_mirror_shows_the_left_hand(tmp_path: Path) -> None:
     actor = "{lane: main 1, from: 200, speed: [[0, 10], [5, 0]], offset: [[1, 0], [4, 3.5]], indicator: [[0, left]]}"
-    right, left = (drawn(tmp_path, actor, side=side) for side in ("right", "left"))
+    right, left = (scene_of(tmp_path, actor, side=side) for side in ("right", "left"))
     for name, sign in (("x_m", 1), ("y_m", -1), ("yaw_rad", -1), ("vx_mps", 1), ("vy_mps", -1)):
         assert column(left, name) == pytest.approx(sign * column(right, name), abs=1e-9), name
     assert (set(column(right, "indicator")), set(column(left, "indicator"))) == ({"left"}, {"right"})
@@ -40,7 +40,7 @@ def test_a_mirror_shows_the_left_hand(tmp_path: Path) -> None:
 
 def test_steps_begin_at_a_second_or_at_a_place_and_a_halt_is_exact(tmp_path: Path) -> None:
     steps = "[{place: 120, lane: -1, over: 2}, {stop: 160, by: 4}]"
-    scene = drawn(tmp_path, f"{{lane: main 1, from: 100, speed: 10, do: {steps}}}")
+    scene = scene_of(tmp_path, f"{{lane: main 1, from: 100, speed: 10, do: {steps}}}")
     y, t = column(scene, "y_m"), seconds(scene)
     assert y[t <= 2.0] == pytest.approx(-1.75)
     assert y[t >= 4.0] == pytest.approx(1.75)
@@ -50,7 +50,7 @@ def test_steps_begin_at_a_second_or_at_a_place_and_a_halt_is_exact(tmp_path: Pat
 def test_a_way_through_a_junction_is_found(tmp_path: Path) -> None:
     for roads, route in (("town", "[west -1, north 1]"), ("ring", "[west -1, ring west 1, south 1]")):
         way = f"{{route: {route}, from: 110, speed: 8}}"
-        scene = drawn(tmp_path, way, roads=roads)
+        scene = scene_of(tmp_path, way, roads=roads)
         x, y = column(scene, "x_m"), column(scene, "y_m")
         assert np.hypot(np.diff(x), np.diff(y)) == pytest.approx(0.8, abs=0.05), "no jump"
 
@@ -71,6 +71,6 @@ def test_a_way_through_a_junction_is_found(tmp_path: Path) -> None:
 )
 def test_what_is_not_understood_is_refused_in_a_line(tmp_path: Path, actor: str, message: str) -> None:
     with pytest.raises(UsageError) as refused:
-        drawn(tmp_path, actor).files()
+        scene_of(tmp_path, actor).files()
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)

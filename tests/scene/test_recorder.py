@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.scene.drawn import column, drawn, seconds
+from tests.scene.scene_text import column, scene_of, seconds
 
 MOVING = "lane: main 1, from: 10, speed: 10"
 
 
 def test_lost_samples_and_ghosts_have_no_rows(tmp_path: Path) -> None:
-    scene = drawn(
+    scene = scene_of(
         tmp_path, f"{{{MOVING}, faults: {{lost: [[3, 4]]}}}}", "ghost: {lane: main 1, from: 80, there: [2, 2.3]}"
     )
     assert len(seconds(scene)) == 101 - 11
@@ -22,7 +22,7 @@ def test_lost_samples_and_ghosts_have_no_rows(tmp_path: Path) -> None:
 
 def test_a_wrong_heading_a_frozen_place_and_a_jump(tmp_path: Path) -> None:
     faults = "{turned: [[1, 2]], frozen: [[4, 5]], shift: [[7, 8, 0, 3]]}"
-    scene = drawn(tmp_path, f"{{{MOVING}, faults: {faults}}}")
+    scene = scene_of(tmp_path, f"{{{MOVING}, faults: {faults}}}")
     t, x, y = seconds(scene), column(scene, "x_m"), column(scene, "y_m")
     assert set(t[np.cos(column(scene, "yaw_rad")) < 0].round(1)) == {round(1 + n / 10, 1) for n in range(11)}
     assert x[(t >= 4) & (t <= 5)] == pytest.approx(50.0)
@@ -31,7 +31,7 @@ def test_a_wrong_heading_a_frozen_place_and_a_jump(tmp_path: Path) -> None:
 
 
 def test_jitter_is_the_same_at_every_time(tmp_path: Path) -> None:
-    first, second = (column(drawn(tmp_path, f"{{{MOVING}, faults: {{jitter: 0.1}}}}"), "y_m") for _ in range(2))
+    first, second = (column(scene_of(tmp_path, f"{{{MOVING}, faults: {{jitter: 0.1}}}}"), "y_m") for _ in range(2))
     assert (first == second).all()
     assert 0.05 < np.std(first) < 0.2
 
@@ -41,7 +41,7 @@ def test_sizes_are_swapped_or_unknown(tmp_path: Path) -> None:
         "a: {lane: main 1, faults: {swapped: true}}",
         "b: {lane: main 1, faults: {unknown: [width, class, speed]}}",
     ]
-    scene = drawn(tmp_path, "{lane: main 1}", *others)
+    scene = scene_of(tmp_path, "{lane: main 1}", *others)
     actors = {row["actor_id"]: row for row in scene.tables()["actor"].to_pylist()}
     assert (actors["a"]["length_m"], actors["a"]["width_m"]) == (1.8, 4.5)
     assert (actors["b"]["width_m"], actors["b"]["actor_class"]) == (None, None)

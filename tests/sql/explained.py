@@ -30,9 +30,9 @@ class Loop(NamedTuple):
 class Explained:
     """A connection that runs every statement under EXPLAIN ANALYZE, too, and keeps the joins without keys that it sees."""
 
-    def __init__(self, con: duckdb.DuckDBPyConnection, found: list[Loop], looked_at: list[str]) -> None:
+    def __init__(self, con: duckdb.DuckDBPyConnection, loops: list[Loop], looked_at: list[str]) -> None:
         self._con = con
-        self._found = found
+        self._loops = loops
         self._looked_at = looked_at
 
     def execute(self, query: Any, parameters: Any = None) -> duckdb.DuckDBPyConnection:
@@ -43,11 +43,11 @@ class Explained:
             plan = self._con.execute(f"EXPLAIN (ANALYZE, FORMAT json) {text}", parameters).fetchall()[0][1]
             self._con.execute("ROLLBACK")
             self._looked_at.append(text)
-            self._found += loops(json.loads(plan), text)
+            self._loops += loops(json.loads(plan), text)
         return self._con.execute(query, parameters)
 
     def cursor(self) -> Explained:
-        return Explained(self._con.cursor(), self._found, self._looked_at)
+        return Explained(self._con.cursor(), self._loops, self._looked_at)
 
     def __enter__(self) -> Self:
         return self

@@ -19,8 +19,8 @@ from drivelint.sql.statements import statement, statement_texts
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-OTHERS = {"assertions", "library", "macros", "skeletons", "statement_macros"}
-PARTS = sorted(path.name for path in folder("queries").iterdir() if path.is_dir() and path.name not in OTHERS)
+OTHER_FOLDERS = {"assertions", "library", "macros", "skeletons", "statement_macros"}
+PARTS = sorted(path.name for path in folder("queries").iterdir() if path.is_dir() and path.name not in OTHER_FOLDERS)
 """The folders of statements that Python runs by name."""
 
 _INCOMPLETE = re.compile(r"\{\w+\}|^\s*-- [Pp]art of", re.MULTILINE)

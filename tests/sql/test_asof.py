@@ -51,7 +51,7 @@ UNIQUE_FOR_A_REASON = {
 """Joins whose right side the drives of this test leave empty, or with one row -> why no two rows are equal."""
 
 
-def written() -> set[str]:
+def asof_names() -> set[str]:
     """Return the names of the ASOF joins of all statements in files."""
     files = sorted(folder("queries").rglob("*.sql"))
     return {join.name for path in files for join in joins(without_comments(path.read_text(encoding="utf-8")))}
@@ -71,8 +71,8 @@ def past_a_lorry(*, on_map: bool) -> Drive:
     seen = (late < 6.0) | (late > 9.0)
     actors = [
         scenes.moving("ego", way, t, 100 + 15 * t, scenes.swing(way, 100 + 15 * t, 150.0, 260.0)),
-        scenes.moving("car", way, late[seen], 160 + 15 * late[seen], way.own),
-        scenes.standing("lorry", way, t, 220.0, -way.own, length=12.0, width=2.5),
+        scenes.moving("car", way, late[seen], 160 + 15 * late[seen], way.ego_d),
+        scenes.standing("lorry", way, t, 220.0, -way.ego_d, length=12.0, width=2.5),
     ]
     made = scenes.drive(actors, way.environment if on_map else None, drive_id=f"lorry {on_map}", in_sight=True)
     return scenes.saying(made, [(1.0, "automated", "on"), (9.0, "automated", "off")])
@@ -98,7 +98,7 @@ def test_right_sides_are_unique_by_the_columns_of_the_condition(tmp_path: Path) 
         run.close()
         rows = dict(con.execute("SELECT sequence_name, coalesce(last_value, 0) FROM duckdb_sequences()").fetchall())
     seen = {name for name, sequence in sequences.items() if rows[sequence] > 1}
-    assert written() - seen == UNIQUE_FOR_A_REASON.keys()
+    assert asof_names() - seen == UNIQUE_FOR_A_REASON.keys()
 
 
 @pytest.mark.parametrize(("equal", "n"), [(False, 1), (True, 1), (False, 100), (True, 100)])

@@ -24,10 +24,10 @@ SELECT drive_id, t_ns FROM ego_state WHERE speed_mps < 0.1
 """
 
 
-def _parts(missing: str) -> str:
+def _parts(missing_part: str) -> str:
     return (
         "write a comment, `-- lifetime: part`, `CREATE TABLE standing (`, `);`, an empty line, "
-        f"`INSERT INTO standing BY NAME` and a SELECT; the first that is missing, or not in its place: {missing}"
+        f"`INSERT INTO standing BY NAME` and a SELECT; the first that is missing, or not in its place: {missing_part}"
     )
 
 

@@ -34,9 +34,9 @@ def database() -> duckdb.DuckDBPyConnection:
     return store.connect(threads=1)
 
 
-def about(found: list[tuple[Box, Box]], *what: str) -> list[tuple[Any, ...]]:
+def about(box_pairs: list[tuple[Box, Box]], *expressions: str) -> list[tuple[Any, ...]]:
     """Return expressions over pairs of boxes a and b, with the arguments of the arithmetic as columns."""
-    values = ", ".join(f"({n}, {', '.join(f'{x!r}::DOUBLE' for x in (*a, *b))})" for n, (a, b) in enumerate(found))
+    values = ", ".join(f"({n}, {', '.join(f'{x!r}::DOUBLE' for x in (*a, *b))})" for n, (a, b) in enumerate(box_pairs))
     return (
         database()
         .execute(f"""
@@ -49,7 +49,7 @@ def about(found: list[tuple[Box, Box]], *what: str) -> list[tuple[Any, ...]]:
                 actor_box(ax + {FAR}, ay + {FAR}, ayaw, al, aw) AS a, actor_box(bx + {FAR}, bby + {FAR}, byaw, bl, bw) AS b
             FROM given
         )
-        SELECT {", ".join(what)} FROM known ORDER BY n
+        SELECT {", ".join(expressions)} FROM known ORDER BY n
         """)
         .fetchall()
     )
@@ -69,8 +69,8 @@ MEET = "boxes_meet(dx, dy, ca, sa, cb, sb, al / 2, aw / 2, bl / 2, bw / 2)"
 
 
 @given(pairs)
-def test_the_clearance_is_the_distance_of_the_boxes(found: list[tuple[Box, Box]]) -> None:
-    for clearance, distance, meet in about(found, CLEARANCE, "apart_m(a, b)", "ST_Intersects(a, b)"):
+def test_the_clearance_is_the_distance_of_the_boxes(box_pairs: list[tuple[Box, Box]]) -> None:
+    for clearance, distance, meet in about(box_pairs, CLEARANCE, "apart_m(a, b)", "ST_Intersects(a, b)"):
         assert isinstance(clearance, float)
         assert abs(max(clearance, 0.0) - distance) < MILLIMETRE
         assert (clearance < -MILLIMETRE) <= meet
@@ -78,8 +78,10 @@ def test_the_clearance_is_the_distance_of_the_boxes(found: list[tuple[Box, Box]]
 
 
 @given(pairs)
-def test_a_box_is_what_shapely_makes_of_it(found: list[tuple[Box, Box]]) -> None:
-    for (x, y, yaw, length, width), (wkb,) in zip([a for a, _ in found], about(found, "ST_AsWKB(a)"), strict=True):
+def test_a_box_is_what_shapely_makes_of_it(box_pairs: list[tuple[Box, Box]]) -> None:
+    for (x, y, yaw, length, width), (wkb,) in zip(
+        [a for a, _ in box_pairs], about(box_pairs, "ST_AsWKB(a)"), strict=True
+    ):
         flat = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
         turned = shapely.affinity.rotate(flat, yaw, origin=(0, 0), use_radians=True)
         expected = shapely.affinity.translate(turned, x + FAR, y + FAR)
@@ -87,24 +89,24 @@ def test_a_box_is_what_shapely_makes_of_it(found: list[tuple[Box, Box]]) -> None
 
 
 @given(pairs)
-def test_a_pair_that_arithmetic_leaves_out_is_apart(found: list[tuple[Box, Box]]) -> None:
+def test_a_pair_that_arithmetic_leaves_out_is_apart(box_pairs: list[tuple[Box, Box]]) -> None:
     """`pair` asks for the clearance only of boxes whose circles are near; `boxes_meet` looks at circles first."""
-    for least, distance, meet, touching in about(found, APART, "apart_m(a, b)", MEET, "ST_Intersects(a, b)"):
+    for least, distance, meet, touching in about(box_pairs, APART, "apart_m(a, b)", MEET, "ST_Intersects(a, b)"):
         assert least <= distance + MILLIMETRE
         assert meet == touching or distance < MILLIMETRE
 
 
 @given(boxes, st.floats(0.1, 200.0), boxes)
-def test_the_danger_space_lies_ahead_of_the_box(box: Box, stopping: float, other: Box) -> None:
+def test_the_danger_space_lies_ahead_of_the_box(box: Box, stopping: float, other_box: Box) -> None:
     """It shares the front with the box, and nothing else; a box further on is in it if it is less far than the stopping distance."""
     x, y, yaw, length, width = box
     space = f"danger_space(ax + {FAR}, ay + {FAR}, ayaw, al, aw, {stopping!r})"
-    ahead = length / 2 + stopping + 1.0 + math.hypot(other[3], other[4]) / 2
-    beyond = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), *other[2:])
+    ahead = length / 2 + stopping + 1.0 + math.hypot(other_box[3], other_box[4]) / 2
+    beyond = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), *other_box[2:])
     near = (
         x + (length / 2 + stopping / 2) * math.cos(yaw),
         y + (length / 2 + stopping / 2) * math.sin(yaw),
-        *other[2:],
+        *other_box[2:],
     )
     asked = (f"ST_Area({space})", f"ST_Area(ST_Intersection({space}, a))", f"ST_Intersects({space}, b)")
     (area, shared, missed), (_, _, hit) = about([(box, beyond), (box, near)], *asked)
@@ -159,14 +161,14 @@ def without_place(shape: str) -> str:
 
 
 @pytest.mark.parametrize("shape", WITHOUT_PLACE)
-@pytest.mark.parametrize("other", ["actor_box(50, 0, 0, 4, 2)", "ST_Point(50, 0)"])
-def test_to_a_shape_without_a_place_there_is_no_distance(shape: str, other: str) -> None:
+@pytest.mark.parametrize("other_shape", ["actor_box(50, 0, 0, 4, 2)", "ST_Point(50, 0)"])
+def test_to_a_shape_without_a_place_there_is_no_distance(shape: str, other_shape: str) -> None:
     """Nor does it meet another. In DuckDB 1.5.5 ST_Distance is 0 for empty ones, and ST_Intersects raises an error at a NaN corner."""
     a = without_place(shape)
     asked = (
         f"{macro}({pair})"
         for macro in ("apart_m", "shapes_meet")
-        for pair in (f"{a}, {other}", f"{other}, {a}", f"{a}, {a}")
+        for pair in (f"{a}, {other_shape}", f"{other_shape}, {a}", f"{a}, {a}")
     )
     assert database().execute(f"SELECT {', '.join(asked)}").fetchall() == [(None,) * 6]
 
@@ -192,8 +194,8 @@ def test_no_statement_moves_a_shape_by_its_height() -> None:
 
 @given(pairs)
 @settings(max_examples=30, deadline=None)
-def test_shapes_meet_as_duckdb_says(found: list[tuple[Box, Box]]) -> None:
-    for meet, touching in about(found, "shapes_meet(a, b)", "ST_Intersects(a, b)"):
+def test_shapes_meet_as_duckdb_says(box_pairs: list[tuple[Box, Box]]) -> None:
+    for meet, touching in about(box_pairs, "shapes_meet(a, b)", "ST_Intersects(a, b)"):
         assert meet == touching
 
 

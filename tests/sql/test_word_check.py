@@ -18,18 +18,18 @@ from drivelint.sql.words import ColumnVocabulary, WordColumn
 from tests.sql.lines import lines
 
 
-def checked(sql: str, tables: dict[str, Relation] | None = None) -> CheckedQuery:
+def check_sql(sql: str, tables: dict[str, Relation] | None = None) -> CheckedQuery:
     return check_query(syntax.parse_select(sql, "a test"), tables)
 
 
 def wrong(sql: str) -> list[str]:
     """Return what is wrong in a SELECT, in order of place."""
-    return [each.message for each in sorted(checked(sql).wrong, key=lambda each: each.offset or 0)]
+    return [each.message for each in sorted(check_sql(sql).wrong, key=lambda each: each.offset or 0)]
 
 
 @pytest.mark.parametrize("sql", lines("wrong_words"))
 def test_a_class_that_does_not_exist_is_found(sql: str) -> None:
-    found = checked(sql).wrong
+    found = check_sql(sql).wrong
     assert [each.word.rstrip("%") for each in found] == ["cyclist"], sql
     assert "did you mean 'bicycle'?" in found[0].message
     place = found[0].offset
@@ -121,7 +121,7 @@ def test_a_text_is_refused_exactly_if_it_is_no_word(place: tuple[str, str, WordC
 
 
 def test_what_a_parameter_is_compared_with_is_known() -> None:
-    found = checked(
+    found = check_sql(
         "SELECT actor_class = $kind, speed_mps > $most_mps, is_class(actor_class, $word) FROM pair"
     ).parameters
     assert {name: [kind.possible_words[0] for kind in kinds] for name, kinds in found.items()} == {
@@ -131,17 +131,17 @@ def test_what_a_parameter_is_compared_with_is_known() -> None:
 
 
 def test_tables_beside_those_of_the_schemas_are_known() -> None:
-    reference = checked("SELECT drive_id, ego_id, t_ns, side AS to_side FROM lane_change").relation._replace(
+    reference = check_sql("SELECT drive_id, ego_id, t_ns, side AS to_side FROM lane_change").relation._replace(
         complete=False
     )
-    found = checked("SELECT r.to_side = 'lefft', r.ref_id = 'x' FROM reference r", {"reference": reference}).wrong
+    found = check_sql("SELECT r.to_side = 'lefft', r.ref_id = 'x' FROM reference r", {"reference": reference}).wrong
     assert [each.message for each in found] == ["'lefft' is no side; did you mean 'left'?"]
 
 
 @pytest.mark.parametrize("name", sorted(derivations()))
 def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column(name: str) -> None:
     """Both what it compares and what it gives; a column that nothing fills would be NULL for ever."""
-    found = checked(derivations()[name].sql)
+    found = check_sql(derivations()[name].sql)
     assert [each.message for each in (*found.wrong, *word_check.wrong_words_in_columns(name, found.relation))] == []
     assert found.relation.complete
     filled = dict(found.relation.columns)
@@ -152,7 +152,7 @@ def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column
 
 
 def test_a_derivation_that_gives_another_word_is_found() -> None:
-    found = checked("SELECT CASE WHEN k = 0 THEN 'left' ELSE 'rigth' END AS side FROM step")
+    found = check_sql("SELECT CASE WHEN k = 0 THEN 'left' ELSE 'rigth' END AS side FROM step")
     (only,) = word_check.wrong_words_in_columns("lane_change", found.relation)
     assert (only.message, only.offset) == ("'rigth' is no side; did you mean 'right'?", 40)
 

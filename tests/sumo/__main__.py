@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.sumo.both import both
+from tests.sumo.comparison import run_comparison
 
 
 def main() -> int:
@@ -19,7 +19,7 @@ def main() -> int:
     parser.add_argument("--folder", type=Path, help="keep the files here")
     asked = parser.parse_args()
     with TemporaryDirectory() as temporary:
-        figures, differ = both(asked.folder or Path(temporary), asked.seconds, asked.seed, asked.plants)
+        figures, differ = run_comparison(asked.folder or Path(temporary), asked.seconds, asked.seed, asked.plants)
     for name, value in figures.items():
         print(f"{name:44} {value:g}")
     print("\n".join(["differences:", *differ]) if differ else "no differences")

@@ -27,7 +27,7 @@ OVERTAKES, COLLISIONS = "ukhc.r162.safe-distance-ahead", "ukhc.no-collision"
 OPEN_M = 400.0  # so near to the road's end a vehicle that comes in soon leaves the distance open
 
 
-class Checked(NamedTuple):
+class CheckResult(NamedTuple):
     """What a run found: overtakes by (ego, step, VBP), contacts, how often those are unknown, and the seconds taken."""
 
     overtakes: dict[tuple[str, int, str], dict[str, Any]]
@@ -37,7 +37,7 @@ class Checked(NamedTuple):
     seconds: float
 
 
-def check(files: Files, out: Path, *, rules: tuple[str, ...] = (OVERTAKES, COLLISIONS)) -> Checked:
+def check(files: Files, out: Path, *, rules: tuple[str, ...] = (OVERTAKES, COLLISIONS)) -> CheckResult:
     """Check a log with every vehicle as ego."""
     begin = time.monotonic()
     command = [sys.executable, "-m", "drivelint", "check", str(files.log), "--map", str(files.map), "--ego", "all"]
@@ -57,7 +57,7 @@ def check(files: Files, out: Path, *, rules: tuple[str, ...] = (OVERTAKES, COLLI
             "SELECT count(*) FROM verdict WHERE rule_id = ? AND verdict = 'unknown'", [COLLISIONS]
         ).fetchall()[0][0]
         touched = [(ego, other, round(a / 1e8), round(b / 1e8)) for ego, other, a, b in found]
-        return Checked(_overtakes(con), touched, unknown, states, seconds)
+        return CheckResult(_overtakes(con), touched, unknown, states, seconds)
 
 
 def _overtakes(con: duckdb.DuckDBPyConnection) -> dict[tuple[str, int, str], dict[str, Any]]:
@@ -101,17 +101,17 @@ def known_by(overtake: Overtake) -> tuple[str, int, str]:
     return overtake.ego, round(overtake.t0 * 10), overtake.vbp
 
 
-def differences(read: list[Overtake], checked: Checked, log: Log) -> tuple[list[str], Counter[str]]:
+def differences(read_overtakes: list[Overtake], result: CheckResult, log: Log) -> tuple[list[str], Counter[str]]:
     """Return what differs, and a count of what was compared."""
     moves, ends = jumps(log), edges(log)
     counts: Counter[str] = Counter()
-    expected = {known_by(o): o for o in read}
+    expected = {known_by(o): o for o in read_overtakes}
     found = [
         f"{key}: only {'read' if key in expected else 'found by drivelint'}"
-        for key in sorted(expected.keys() ^ checked.overtakes.keys())
+        for key in sorted(expected.keys() ^ result.overtakes.keys())
     ]
-    for key in sorted(expected.keys() & checked.overtakes.keys()):
-        mine, theirs = expected[key], checked.overtakes[key]
+    for key in sorted(expected.keys() & result.overtakes.keys()):
+        mine, theirs = expected[key], result.overtakes[key]
         counts["overtakes"] += 1
         counts["passed" if mine.passed else "not passed"] += 1
         if (mine.ov, mine.passed) != (theirs["ov"], theirs["passed"]):
@@ -159,16 +159,16 @@ def _innermost(cause_args: str | None) -> dict[str, Any]:
     return _innermost(json.dumps(json.loads(lack)["args"])) if lack.startswith("{") else args
 
 
-def _later(read: float | None, found: float | None) -> str:
+def _later(read_s: float | None, found_s: float | None) -> str:
     """Say how the end of an overtake compares: a step apart is the polyline's millimetre at the line."""
-    if read is None or found is None:
-        return "not seen" if read is found else "differs"
-    return {0: "at the same step", 1: "one step apart"}.get(abs(round(10 * (read - found))), "differs")
+    if read_s is None or found_s is None:
+        return "not seen" if read_s is found_s else "differs"
+    return {0: "at the same step", 1: "one step apart"}.get(abs(round(10 * (read_s - found_s))), "differs")
 
 
 def other_contacts(
-    read: list[Contact],
-    found: list[tuple[str, str, int, int]],
+    read_contacts: list[Contact],
+    found_contacts: list[tuple[str, str, int, int]],
     moves: set[tuple[str, int]],
     still: Collection[tuple[str, int]] = (),
 ) -> tuple[list[str], int]:
@@ -178,8 +178,8 @@ def other_contacts(
     later and end earlier by steps at which one of both is moved. Boxes that overlap while both stand show no contact: it may end earlier
     by these steps, too.
     """
-    both = {(a, b, c.first, c.last) for c in read for a, b in ((c.one, c.other), (c.other, c.one))}
-    only_read, only_found = both - set(found), set(found) - both
+    both = {(a, b, c.first, c.last) for c in read_contacts for a, b in ((c.id_a, c.id_b), (c.id_b, c.id_a))}
+    only_read, only_found = both - set(found_contacts), set(found_contacts) - both
     moved = set()
     for one, other, first, last in sorted(only_read):
         for there in sorted(c for c in only_found if c[:2] == (one, other) and first <= c[2] <= c[3] <= last):

@@ -28,8 +28,8 @@ ASIDE_M = 40.0  # two planted vehicles meet so far to the left of the road
 class Contact(NamedTuple):
     """A stretch of contact of two vehicles (ids in order), first and last step in tenths of a second."""
 
-    one: str
-    other: str
+    id_a: str
+    id_b: str
     first: int
     last: int
 
@@ -51,8 +51,8 @@ class Plant(NamedTuple):
 
     kind: str
     step: int
-    one: str
-    other: str
+    planted_id: str
+    other_id: str
     touches: bool
     x_m: float
     y_m: float
@@ -62,7 +62,7 @@ class Plant(NamedTuple):
 def contacts(log: Log) -> list[Contact]:
     """Return every stretch in which two boxes overlap or touch."""
     cos, sin = np.cos(log.heading), np.sin(log.heading)
-    half = log.sizes[log.who] / 2
+    half = log.sizes[log.id_index] / 2
     x, y = log.x - half[:, 0] * cos, log.y - half[:, 0] * sin
     found: dict[tuple[int, int], list[int]] = {}
     for k in range(1, int(np.bincount(log.step).max())):
@@ -76,7 +76,7 @@ def contacts(log: Log) -> list[Contact]:
             ]
             apart = np.maximum(apart, np.abs((x[j] - x[i]) * ax + (y[j] - y[i]) * ay) - reach[0] - reach[1])
         for n in np.flatnonzero(apart <= 0):
-            pair = sorted((int(log.who[i[n]]), int(log.who[j[n]])))
+            pair = sorted((int(log.id_index[i[n]]), int(log.id_index[j[n]])))
             found.setdefault((pair[0], pair[1]), []).append(int(log.step[i[n]]))
     return sorted(c for (a, b), steps in found.items() for c in _stretches(log.ids[a], log.ids[b], sorted(steps)))
 
@@ -121,7 +121,7 @@ def _alone(log: Log) -> NDArray[np.intp]:
     free &= log.speed > MOVING_MPS
     found = []
     for who in range(len(log.ids)):
-        rows = np.flatnonzero(log.who == who)
+        rows = np.flatnonzero(log.id_index == who)
         for k in range(LIFE, len(rows) - LIFE):
             span = rows[k - LIFE : k + LIFE + 1]
             if free[span].all() and np.ptp(log.heading[span]) < STRAIGHT_RAD:
@@ -131,10 +131,12 @@ def _alone(log: Log) -> NDArray[np.intp]:
 
 def _plant(log: Log, kind: str, name: str, row: int, like: int, *, touches: bool) -> Plant:
     """Return a meeting with the vehicle of this row, or beside the road where it drives."""
-    step, near = int(log.step[row]), int(log.who[row])
+    step, near = int(log.step[row]), int(log.id_index[row])
     span = np.arange(step - LIFE, step + LIFE + 1)
-    own = log.of(near).during(span[0], span[-1])
-    meeting = _Meeting(kind, own, (span - step) / 10, -GAP_M if touches else GAP_M, log.sizes[near], log.sizes[like])
+    vehicle = log.of(near).during(span[0], span[-1])
+    meeting = _Meeting(
+        kind, vehicle, (span - step) / 10, -GAP_M if touches else GAP_M, log.sizes[near], log.sizes[like]
+    )
     moves = [_of_traffic(meeting)] if kind in OF_TRAFFIC else _beside_road(meeting)
     tracks = tuple(
         Track(f"{name}-{n}", who, int(span[0]), *move)
@@ -155,10 +157,10 @@ _Move = tuple["Floats", "Floats", "Floats", "Floats"]
 
 
 class _Meeting(NamedTuple):
-    """`own`: the vehicle of the log; `t`: seconds from the closest moment; boxes: length and width of the two."""
+    """`vehicle`: the one of the log; `t`: seconds from the closest moment; boxes: length and width of the two."""
 
     kind: str
-    own: Log
+    vehicle: Log
     t: Floats
     gap: float
     box: Floats
@@ -176,11 +178,11 @@ def _of_traffic(m: _Meeting) -> _Move:
     elif m.kind == "beside":
         left = -(beside + apart)
     else:
-        way = np.cumsum(m.own.speed) / 10
+        way = np.cumsum(m.vehicle.speed) / 10
         ahead, left = 2.0 * (way[LIFE] - way), np.full(len(m.t), -(beside + m.gap))
-    cos, sin = np.cos(m.own.heading), np.sin(m.own.heading)
-    x = m.own.x + (ahead - length / 2) * cos - left * sin
-    y = m.own.y + (ahead - length / 2) * sin + left * cos
+    cos, sin = np.cos(m.vehicle.heading), np.sin(m.vehicle.heading)
+    x = m.vehicle.x + (ahead - length / 2) * cos - left * sin
+    y = m.vehicle.y + (ahead - length / 2) * sin + left * cos
     vx, vy = np.gradient(x, 0.1), np.gradient(y, 0.1)
     return x, y, np.arctan2(vy, vx), np.hypot(vx, vy)
 
@@ -200,18 +202,18 @@ def _beside_road(m: _Meeting) -> list[_Move]:
     else:  # its left side passes the front right corner
         out = m.planted[1] / 2 + m.gap
         ahead, left = m.box[0] / 2 + out * np.sin(turned), -m.box[1] / 2 - out * np.cos(turned)
-    angle = m.own.heading[LIFE]
+    angle = m.vehicle.heading[LIFE]
     cos, sin = np.cos(angle), np.sin(angle)
-    x, y = m.own.x[LIFE] - ASIDE_M * sin + nothing, m.own.y[LIFE] + ASIDE_M * cos + nothing
+    x, y = m.vehicle.x[LIFE] - ASIDE_M * sin + nothing, m.vehicle.y[LIFE] + ASIDE_M * cos + nothing
     passing_x = x + ahead * cos - left * sin + along * np.cos(angle + turned)
     passing_y = y + ahead * sin + left * cos + along * np.sin(angle + turned)
     return [(x, y, nothing + angle, nothing), (passing_x, passing_y, nothing + angle + turned, speed)]
 
 
-def write(log: Log, chosen: list[Plant], source: Path, target: Path) -> None:
+def write(log: Log, all_plants: list[Plant], source: Path, target: Path) -> None:
     """Copy a log with the planted vehicles in it."""
     lines: dict[int, list[str]] = {}
-    for plant in chosen:
+    for plant in all_plants:
         for track in plant.tracks:
             half = log.sizes[track.like, 0] / 2
             front_x, front_y = track.x + half * np.cos(track.heading), track.y + half * np.sin(track.heading)
@@ -231,12 +233,12 @@ def write(log: Log, chosen: list[Plant], source: Path, target: Path) -> None:
             out.write(line)
 
 
-def as_planted(chosen: list[Plant], read: list[Contact]) -> list[str]:
+def as_planted(all_plants: list[Plant], read_contacts: list[Contact]) -> list[str]:
     """Return the plants that the reading does not see as they were meant."""
-    touched = {(c.one, c.other): c for c in read}
+    touched = {(c.id_a, c.id_b): c for c in read_contacts}
     wrong = []
-    for plant in chosen:
-        one, other = sorted((plant.one, plant.other))
+    for plant in all_plants:
+        one, other = sorted((plant.planted_id, plant.other_id))
         if ((one, other) in touched) != plant.touches:
             wrong.append(f"{plant.kind} of {one} and {other}: {'' if plant.touches else 'no '}contact was planted")
     return wrong

@@ -13,7 +13,7 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
 from drivelint.formats import load_map, read_trace
 from drivelint.road.map_reader import MapSource
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 from tests.sumo.world import run
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def crossings(folder: Path) -> list[Crossing]:
     return found
 
 
-def told(folder: Path, road: str) -> Drive:
+def crossroads_drive(folder: Path, road: str) -> Drive:
     """Return the log, every vehicle an ego, with the lights' states beside it, on the map `road`: c.xodr or c.net.xml.
 
     In Great Britain nobody turns on red; where the nation is not known, a right turn may be allowed.
@@ -152,7 +152,7 @@ def told(folder: Path, road: str) -> Drive:
 def compared(folder: Path, road: str) -> Compared:
     """Hold the verdicts on red lights against SUMO's own states."""
     verdicts: dict[str, list[str]] = {}
-    for row in judged([told(folder, road)], rules=(_RULE,)):
+    for row in verdict_rows([crossroads_drive(folder, road)], rules=(_RULE,)):
         if row["t_ref_ns"] is not None:
             # SUMO moves who stands into the next lane at once: from there on the vehicle is "id#2"
             verdicts.setdefault(row["ego_id"].partition("#")[0], []).append(row["verdict"])

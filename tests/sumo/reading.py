@@ -65,7 +65,7 @@ class Net:
 
 @dataclass(frozen=True)
 class Log:
-    """Rows by step: `step` counts tenths of a second; `who` indexes `ids`; corners (row, 4).
+    """Rows by step: `step` counts tenths of a second; `id_index` indexes `ids`; corners (row, 4).
 
     `kinds`, `sizes`: type, length and width by vehicle. `x`, `y`: the middle of the front bumper; `heading` counter-clockwise from east.
     `against`: it drives the way of `ba`. `along`: on the middle of its own lane; `offset` from the centre line, positive on
@@ -76,7 +76,7 @@ class Log:
     kinds: tuple[str, ...]
     sizes: Floats
     step: NDArray[np.int64]
-    who: NDArray[np.int64]
+    id_index: NDArray[np.int64]
     x: Floats
     y: Floats
     heading: Floats
@@ -86,8 +86,8 @@ class Log:
     met: Floats
     offset: Floats
 
-    def of(self, who: int) -> Log:
-        return self._take(self.who == who)
+    def of(self, id_index: int) -> Log:
+        return self._take(self.id_index == id_index)
 
     def at(self, step: int) -> Log:
         return self.during(step, step)
@@ -103,7 +103,7 @@ class Log:
         )
 
     def _take(self, rows: NDArray[np.bool_] | slice) -> Log:
-        names = ("step", "who", "x", "y", "heading", "against", "speed", "along", "met", "offset")
+        names = ("step", "id_index", "x", "y", "heading", "against", "speed", "along", "met", "offset")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
 
@@ -152,8 +152,8 @@ def read_log(log: Path, routes: Path, net: Net) -> Log:
             kinds.append(vehicle["type"])
         at = (float(vehicle[key]) for key in ("x", "y", "angle", "speed", "pos"))
         rows.append((step, numbers[name], vehicle["lane"] == "ba_0", *at))
-    step, who, on_ba, x, y, angle, speed, pos = np.array(rows, np.float64).T
-    who = who.astype(np.int64)
+    step, id_index, on_ba, x, y, angle, speed, pos = np.array(rows, np.float64).T
+    id_index = id_index.astype(np.int64)
     length, width = (np.array([sizes[kind][k] for kind in kinds]) for k in (0, 1))
     heading = np.radians(90.0 - angle)
     forward, side = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
@@ -163,7 +163,7 @@ def read_log(log: Path, routes: Path, net: Net) -> Log:
     against = forward[0] * (ab.x[k + 1] - ab.x[k]) + forward[1] * (ab.y[k + 1] - ab.y[k]) < 0
     found = {name: np.empty((2, len(x), 4)) for name in net.lines}
     for n, (back, beside) in enumerate(((0.0, 0.5), (0.0, -0.5), (1.0, 0.5), (1.0, -0.5))):
-        cx, cy = np.array([x, y]) - back * length[who] * forward + beside * width[who] * side
+        cx, cy = np.array([x, y]) - back * length[id_index] * forward + beside * width[id_index] * side
         for name, line in net.lines.items():
             found[name][0, :, n], found[name][1, :, n] = line.place(cx, cy, own[name])
     (along, offset), (met, _) = (
@@ -176,7 +176,7 @@ def read_log(log: Path, routes: Path, net: Net) -> Log:
         tuple(kinds),
         np.array([length, width]).T,
         steps,
-        who,
+        id_index,
         x,
         y,
         heading,
@@ -215,7 +215,7 @@ def jumps(log: Log) -> set[tuple[str, int]]:
 def still(log: Log) -> set[tuple[str, int]]:
     """Return who stands at a step."""
     rows = np.flatnonzero(log.speed < STILL_MPS)
-    return {(log.ids[who], int(step)) for who, step in zip(log.who[rows], log.step[rows], strict=True)}
+    return {(log.ids[who], int(step)) for who, step in zip(log.id_index[rows], log.step[rows], strict=True)}
 
 
 def edges(log: Log) -> dict[str, tuple[int, int]]:
@@ -235,40 +235,40 @@ def overtakes(log: Log, net: Net) -> list[Overtake]:
     return sorted(found, key=lambda o: (o.t0, o.ego, o.vbp))
 
 
-def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overtake]:
+def _excursion(log: Log, net: Net, ego: Log, first: int, end: int) -> list[Overtake]:
     """Return whom the vehicle overtakes in its rows from `first` until before `end`."""
-    step = int(own.step[first])
+    step = int(ego.step[first])
     there = log.at(step)
-    me = own.who[first]
-    front, centre = own.along[first].max(), own.along[first].mean()
-    same = there.against == own.against[first]
+    me = ego.id_index[first]
+    front, centre = ego.along[first].max(), ego.along[first].mean()
+    same = there.against == ego.against[first]
     # who stands in the lane is passed, whichever way it faces
-    there = there.seen_by(bool(own.against[first]))
-    ahead = (there.along.mean(axis=1) > centre) & (there.offset.max(axis=1) > OVER_M) & (there.who != me)
+    there = there.seen_by(bool(ego.against[first]))
+    ahead = (there.along.mean(axis=1) > centre) & (there.offset.max(axis=1) > OVER_M) & (there.id_index != me)
     ahead &= same | (there.speed <= STANDING_MPS)
     order = np.flatnonzero(ahead)[np.argsort(there.along[ahead].min(axis=1))]
-    back = end < len(own.step)
-    well = -own.offset[first:end].min() >= WELL_OVER_M or not back
+    back = end < len(ego.step)
+    well = -ego.offset[first:end].min() >= WELL_OVER_M or not back
     gaps = there.along[order].min(axis=1) - front
     row_begin = float(there.along[order].min()) if len(order) else math.nan  # rear of the nearest one
     found = []
     for rank, at in enumerate(order):
-        vbp = int(there.who[at])
-        passed = _passed(own, log.of(vbp).seen_by(bool(own.against[first])), first, min(end + 1, len(own.step)))
+        vbp = int(there.id_index[at])
+        passed = _passed(ego, log.of(vbp).seen_by(bool(ego.against[first])), first, min(end + 1, len(ego.step)))
         if not passed and not (rank == 0 and gaps[0] <= NEAR_M and well):
             continue
-        line = net.lines["ba_0" if own.against[first] else "ab_0"]
-        others = _oncoming(there, line, bool(own.against[first]), float(front), float(centre))
+        line = net.lines["ba_0" if ego.against[first] else "ab_0"]
+        others = _oncoming(there, line, bool(ego.against[first]), float(front), float(centre))
         da, _, ov = others[0]
         # the row of vehicles from the nearest one's rear to this one's front; one that is alone has its own length
         row_m = float(there.along[at].max() - row_begin)
         # one that sped up to overtake: whether it planned with the speed that it had or with the one that it got to is not known
         later = math.nan
         if not back:
-            later = float(own.speed[first:].max())
+            later = float(ego.speed[first:].max())
         elif passed:
-            later = _mean_speed(own, first, end)
-        speeds = float(own.speed[first]), max(float(own.speed[first]), later)
+            later = _mean_speed(ego, first, end)
+        speeds = float(ego.speed[first]), max(float(ego.speed[first]), later)
         verdicts: dict[str, str] = {}
         for name, (angle, gap) in PROFILES.items():
             way_m = 2 * gap + row_m + log.sizes[me, 0]
@@ -282,28 +282,28 @@ def _excursion(log: Log, net: Net, own: Log, first: int, end: int) -> list[Overt
                 if (needed or 0) >= other_da > (least or math.inf):
                     said.add("unknown")
                 else:
-                    said.add(_verdict(other_da, needed, seen=who is not None, begin=first > 0))
+                    said.add(_verdict(other_da, needed, is_seen=who is not None, begin=first > 0))
             # everybody who comes counts, not the nearest alone
             verdicts[name] = next(verdict for verdict in ("fail", "unknown", "pass") if verdict in said)
         found.append(
             Overtake(
-                log.ids[me], step / 10, int(own.step[end]) / 10 if back else None, log.ids[vbp], passed,
+                log.ids[me], step / 10, int(ego.step[end]) / 10 if back else None, log.ids[vbp], passed,
                 None if ov is None else log.ids[ov], da, float(line.s[-1] - front), verdicts,
             )
         )  # fmt: skip
     return found
 
 
-def _mean_speed(own: Log, first: int, end: int) -> float:
+def _mean_speed(ego: Log, first: int, end: int) -> float:
     """Return the speed at which the vehicle covers the way of its rows from `first` to `end`."""
-    way = np.hypot(np.diff(own.x[first : end + 1]), np.diff(own.y[first : end + 1])).sum()
-    return float(way / (0.1 * (own.step[end] - own.step[first])))
+    way = np.hypot(np.diff(ego.x[first : end + 1]), np.diff(ego.y[first : end + 1])).sum()
+    return float(way / (0.1 * (ego.step[end] - ego.step[first])))
 
 
-def _passed(own: Log, other: Log, first: int, end: int) -> bool:
+def _passed(ego: Log, vehicle: Log, first: int, end: int) -> bool:
     """Say whether the vehicle's front gets past the other's in its rows from `first` until before `end`."""
-    _, mine, theirs = np.intersect1d(own.step[first:end], other.step, return_indices=True)
-    return bool((own.along[first:end].max(axis=1)[mine] > other.along.max(axis=1)[theirs]).any())
+    _, mine, theirs = np.intersect1d(ego.step[first:end], vehicle.step, return_indices=True)
+    return bool((ego.along[first:end].max(axis=1)[mine] > vehicle.along.max(axis=1)[theirs]).any())
 
 
 def _oncoming(
@@ -319,7 +319,7 @@ def _oncoming(
         return [(min(float(line.s[-1]) - front, LOOK_M), math.nan, None)]
     das = there.along.min(axis=1) - front
     found = np.flatnonzero(coming)
-    return [(float(das[k]), float(there.speed[k]), int(there.who[k])) for k in found[np.argsort(das[found])]]
+    return [(float(das[k]), float(there.speed[k]), int(there.id_index[k])) for k in found[np.argsort(das[found])]]
 
 
 def _safe_distance(lane_m: float, angle: float, way_m: float, speeds: tuple[float, float, float]) -> float | None:
@@ -337,9 +337,9 @@ def _safe_distance(lane_m: float, angle: float, way_m: float, speeds: tuple[floa
     return own_way + v_ov * (2 * aside + beside) + 0.3 * mph + (0.058 - 0.011 * mph + 0.015 * mph * mph)
 
 
-def _verdict(da: float, sda: float | None, *, seen: bool, begin: bool) -> str:
+def _verdict(da: float, sda: float | None, *, is_seen: bool, begin: bool) -> str:
     if sda is None or not begin:
         return "unknown"
     if da > sda:
         return "pass"
-    return "fail" if seen else "unknown"  # what comes from beyond the road's end is not told
+    return "fail" if is_seen else "unknown"  # what comes from beyond the road's end is not told

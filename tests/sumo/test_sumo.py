@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.sumo import compare, contacts, reading, world
-from tests.sumo.both import both
+from tests.sumo.comparison import run_comparison
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,7 +23,7 @@ needs_sumo = pytest.mark.skipif(
 
 @needs_sumo
 def test_overtakes_and_contacts_are_those_of_an_independent_reading(tmp_path: Path) -> None:
-    figures, differ = both(tmp_path, seconds=300, seed=4, per_kind=1)
+    figures, differ = run_comparison(tmp_path, seconds=300, seed=4, per_kind=1)
     assert not differ
     assert figures["overtakes found"] >= 20
     assert figures["largest difference of DA (m)"] < 0.1

@@ -14,7 +14,7 @@ from drivelint.sql import store
 from tests.shared_data import DATA
 from tests.waymo_json import write
 
-from .sheet import drawn
+from .sheet import draw_sheet
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -96,20 +96,30 @@ def draw(folder: Path, seed: int, count: int, *, copies: bool = True, without: C
     sheets.mkdir(parents=True, exist_ok=True)
     key = {}
     for number, (result, row) in enumerate(taken, 1):
-        drawn(result, row, number, sheets / f"{number:03}.png")
+        draw_sheet(result, row, number, sheets / f"{number:03}.png")
         key[number] = {
             "log": result.log,
             "source": result.source,
             "recorder": row["is_recorder"],
             "sure": None if row["n_copies"] is None else row["n_stays"] >= 0.95 * row["n_copies"],
-            **{name: row[name] for name in _KEPT},
+            **{name: row[name] for name in _KEY_COLUMNS},
         }
     text = json.dumps({"seed": seed, "of": len(lots), "sheets": key}, indent=1, default=str)
     (folder / "key.json").write_text(text + "\n", encoding="utf-8")
     return len(taken)
 
 
-_KEPT = ("finding_id", "drive_id", "ego_id", "object_id", "rule_id", "profile", "severity", "t_worst_s", "reason")
+_KEY_COLUMNS = (
+    "finding_id",
+    "drive_id",
+    "ego_id",
+    "object_id",
+    "rule_id",
+    "profile",
+    "severity",
+    "t_worst_s",
+    "reason",
+)
 
 
 def _findings(result: Result) -> list[dict[str, Any]]:

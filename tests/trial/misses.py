@@ -36,7 +36,7 @@ def unnoticed(result: Result) -> list[str]:
     lines = []
     for ego_id in egos:
         ego = tracks.get(ego_id)
-        if ego is None or ego.moved() < MOVED_M or not ego.sized:
+        if ego is None or ego.extent_m() < MOVED_M or not ego.sized:
             continue
         for name, other in tracks.items():
             near = None if other is ego or not other.sized else _near(ego, other)
@@ -59,22 +59,22 @@ def unnoticed(result: Result) -> list[str]:
     return lines
 
 
-def _near(ego: Track, other: Track) -> tuple[float, float, float] | None:
+def _near(ego: Track, other_track: Track) -> tuple[float, float, float] | None:
     """Return time, distance and relative speed of the nearest sound moment of a near contact; None: there is none."""
-    reach = (ego.length + other.length) / 2 + NEAR_M
-    if min(len(ego.t), len(other.t)) < 3 or min(np.ptp(ego.t), np.ptp(other.t)) < SOUND_S:
+    reach = (ego.length + other_track.length) / 2 + NEAR_M
+    if min(len(ego.t), len(other_track.t)) < 3 or min(np.ptp(ego.t), np.ptp(other_track.t)) < SOUND_S:
         return None
-    if (ego.x.min() > other.x.max() + reach) or (other.x.min() > ego.x.max() + reach):
+    if (ego.x.min() > other_track.x.max() + reach) or (other_track.x.min() > ego.x.max() + reach):
         return None
-    t, distance, _, _ = apart(ego, other)
-    i, j = (np.clip(np.searchsorted(track.t, t - 0.06), 0, len(track.t) - 1) for track in (ego, other))
+    t, distance, _, _ = apart(ego, other_track)
+    i, j = (np.clip(np.searchsorted(track.t, t - 0.06), 0, len(track.t) - 1) for track in (ego, other_track))
     velocity = [
         np.stack([np.gradient(track.x, track.t), np.gradient(track.y, track.t)], axis=1)[k]
-        for track, k in ((ego, i), (other, j))
+        for track, k in ((ego, i), (other_track, j))
     ]
     relative = np.hypot(*(velocity[0] - velocity[1]).T)
     sound = np.ones(len(t), dtype=bool)
-    for track, k in ((ego, i), (other, j)):
+    for track, k in ((ego, i), (other_track, j)):
         sound &= ~(np.abs(track.derived_speed()[k] - track.speed[k]) > STEP_MPS)
     moments = np.flatnonzero(sound & (distance < NEAR_M) & (relative > RELATIVE_MPS))
     if not len(moments):

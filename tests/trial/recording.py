@@ -45,9 +45,9 @@ class Track(NamedTuple):
         i = int(np.argmin(np.abs(self.t - t)))
         return i if abs(self.t[i] - t) <= tolerance else None
 
-    def boxes(self, which: NDArray[np.intp] | list[int]) -> NDArray[np.object_]:
+    def boxes(self, indices: NDArray[np.intp] | list[int]) -> NDArray[np.object_]:
         """Return the polygons of states."""
-        i = np.asarray(which, dtype=np.intp)
+        i = np.asarray(indices, dtype=np.intp)
         ahead = np.array([1, 1, -1, -1]) * self.length / 2
         left = np.array([1, -1, -1, 1]) * self.width / 2
         c, s = np.cos(self.yaw[i])[:, None], np.sin(self.yaw[i])[:, None]
@@ -72,7 +72,7 @@ class Track(NamedTuple):
         off: NDArray[np.bool_] = across | (np.cos(motion - self.travel) < 0)
         return off
 
-    def moved(self) -> float:
+    def extent_m(self) -> float:
         """Return how far from one place the track leads, in metres."""
         return float(max(np.ptp(self.x), np.ptp(self.y)))
 
@@ -157,26 +157,26 @@ def _track(actor_class: str, length: float | None, width: float | None, *columns
     return Track(actor_class, length or drawn_length, width or drawn_width, sized, t, x, y, yaw, speed, travel, doubted)
 
 
-def apart(one: Track, other: Track) -> tuple[Floats, Floats, Floats, Floats]:
+def apart(first: Track, second: Track) -> tuple[Floats, Floats, Floats, Floats]:
     """Return the times that two tracks share, and of each the distance of the boxes, and how far ahead and left the other is of the first.
 
     Ahead is from bumper to bumper (negative: the boxes overlap lengthwise, or the other is behind), left from middle to middle.
     """
-    near = np.clip(np.searchsorted(other.t, one.t), 1, max(len(other.t) - 1, 1)) if len(other.t) > 1 else None
+    near = np.clip(np.searchsorted(second.t, first.t), 1, max(len(second.t) - 1, 1)) if len(second.t) > 1 else None
     j = (
-        np.zeros(len(one.t), dtype=np.intp)
+        np.zeros(len(first.t), dtype=np.intp)
         if near is None
-        else np.where(np.abs(other.t[near] - one.t) < np.abs(other.t[near - 1] - one.t), near, near - 1)
+        else np.where(np.abs(second.t[near] - first.t) < np.abs(second.t[near - 1] - first.t), near, near - 1)
     )
-    i = np.flatnonzero((np.abs(other.t[j] - one.t) < 0.06) & np.isfinite(one.yaw) & np.isfinite(other.yaw[j]))
+    i = np.flatnonzero((np.abs(second.t[j] - first.t) < 0.06) & np.isfinite(first.yaw) & np.isfinite(second.yaw[j]))
     j = j[i]
     if not len(i):
         return (np.empty(0),) * 4
-    boxes = other.boxes(j)
-    distance = shapely.distance(one.boxes(i), boxes)
+    boxes = second.boxes(j)
+    distance = shapely.distance(first.boxes(i), boxes)
     corners = shapely.get_coordinates(boxes).reshape(len(i), 5, 2)
-    dx, dy = corners[..., 0] - one.x[i, None], corners[..., 1] - one.y[i, None]
-    c, s = np.cos(one.yaw[i])[:, None], np.sin(one.yaw[i])[:, None]
-    ahead = (dx * c + dy * s).min(axis=1) - one.length / 2
-    left = -(other.x[j] - one.x[i]) * s[:, 0] + (other.y[j] - one.y[i]) * c[:, 0]
-    return one.t[i], distance, ahead, left
+    dx, dy = corners[..., 0] - first.x[i, None], corners[..., 1] - first.y[i, None]
+    c, s = np.cos(first.yaw[i])[:, None], np.sin(first.yaw[i])[:, None]
+    ahead = (dx * c + dy * s).min(axis=1) - first.length / 2
+    left = -(second.x[j] - first.x[i]) * s[:, 0] + (second.y[j] - first.y[i]) * c[:, 0]
+    return first.t[i], distance, ahead, left

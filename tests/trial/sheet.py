@@ -26,7 +26,7 @@ FILLS = {"crosswalk": "#fff2b0", "bicycle": "#d7efd7", "walkway": "#eee0ee", "sh
 BEFORE_S = AFTER_S = 5.0
 
 
-def drawn(result: Result, row: dict[str, Any], number: int, path: Path) -> None:
+def draw_sheet(result: Result, row: dict[str, Any], number: int, path: Path) -> None:
     """Write the sheet of a finding as PNG. It needs matplotlib, which is imported here only."""
     from matplotlib import pyplot as plt
 
@@ -48,7 +48,7 @@ def drawn(result: Result, row: dict[str, Any], number: int, path: Path) -> None:
     plt.close(figure)
 
 
-def _caption(row: dict[str, Any], number: int, ego: Track, other: Track | None) -> str:
+def _caption(row: dict[str, Any], number: int, ego: Track, other_track: Track | None) -> str:
     moments = [row[f"t_{name}_s"] for name in ("start", "worst", "end")]
 
     def about(track: Track) -> str:
@@ -57,7 +57,7 @@ def _caption(row: dict[str, Any], number: int, ego: Track, other: Track | None) 
             f"{track.actor_class} {size}, seen {track.t[0]:.1f} to {track.t[-1]:.1f} s{heading_warning(track, moments)}"
         )
 
-    who = f"EGO (blue) {about(ego)}" + (f";  OBJECT (red) {about(other)}" if other else ";  no object")
+    who = f"EGO (blue) {about(ego)}" + (f";  OBJECT (red) {about(other_track)}" if other_track else ";  no object")
     required = "" if row["required"] is None else f"  required {row['required']:.2f} {row['unit'] or ''}"
     observed = "" if row["observed"] is None else f"  {row['observes'] or 'observed'} {row['observed']:.2f}"
     lines = [
@@ -97,25 +97,25 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
     middle, half = np.zeros(2), 22.0
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
 
-    def seen(x: Any, y: Any) -> Any:
+    def to_view(x: Any, y: Any) -> Any:
         return rotation @ np.array([np.asarray(x) - x0, np.asarray(y) - y0])
 
     if other is not None and j is not None:
-        there = seen(other.x[j], other.y[j])
+        there = to_view(other.x[j], other.y[j])
         half = float(np.clip(np.abs(there).max() / 2 + 11, 17.0, 70.0))
         middle = np.clip(there / 2, -60, 60)
-    _lanes(axis, log, seen, float(np.abs(middle).max()) + half)
+    _lanes(axis, log, to_view, float(np.abs(middle).max()) + half)
     for name, track in log.tracks.items():
         k = track.at(t, 0.12)
         if k is None or np.hypot(track.x[k] - x0, track.y[k] - y0) > 150:
             continue
-        colour = EGO if track is ego else OBJECT if track is other else MOVING if track.moved() > 1.5 else PARKED
-        _box(axis, track, k, seen, colour)
+        colour = EGO if track is ego else OBJECT if track is other else MOVING if track.extent_m() > 1.5 else PARKED
+        _box(axis, track, k, to_view, colour)
         if colour in (MOVING, EGO, OBJECT):
             past, future = (track.t <= t) & (track.t > t - BEFORE_S), (track.t >= t) & (track.t < t + AFTER_S)
-            axis.plot(*seen(track.x[past], track.y[past]), "-", color=colour, lw=1, zorder=5)
-            axis.plot(*seen(track.x[future], track.y[future]), ":", color=colour, lw=1.3, zorder=5)
-        label = seen(track.x[k], track.y[k])
+            axis.plot(*to_view(track.x[past], track.y[past]), "-", color=colour, lw=1, zorder=5)
+            axis.plot(*to_view(track.x[future], track.y[future]), ":", color=colour, lw=1.3, zorder=5)
+        label = to_view(track.x[k], track.y[k])
         if np.abs(label - middle).max() < half:
             axis.text(
                 *label, f"{name[-4:]} {track.actor_class[:4]} {track.speed[k]:.1f}", fontsize=7, zorder=8, clip_on=True
@@ -127,7 +127,7 @@ def _from_above(axis: Any, log: Recording, row: dict[str, Any], t: float) -> Non
     axis.grid(alpha=0.25)
 
 
-def _box(axis: Any, track: Track, k: int, seen: Any, colour: str) -> None:
+def _box(axis: Any, track: Track, k: int, to_view: Any, colour: str) -> None:
     """Draw the box of a state with a nose in its direction of travel, and its motion as an arrow where the box does not stand along it.
 
     A state without a heading is a circle in which the box is, however it stands.
@@ -138,28 +138,28 @@ def _box(axis: Any, track: Track, k: int, seen: Any, colour: str) -> None:
         corners = np.asarray(track.boxes([k])[0].exterior.coords).T
         edge = WARNING if track.doubted[k] else colour
         axis.fill(
-            *seen(*corners), fc=colour if known else "none", ec=edge, alpha=0.75 if known else 1, lw=1.2, zorder=6
+            *to_view(*corners), fc=colour if known else "none", ec=edge, alpha=0.75 if known else 1, lw=1.2, zorder=6
         )
         # a box that travels backwards has its nose at its rear
-        nose = seen(x + np.cos(track.travel[k]) * reach, y + np.sin(track.travel[k]) * reach)
+        nose = to_view(x + np.cos(track.travel[k]) * reach, y + np.sin(track.travel[k]) * reach)
         axis.plot(*nose, color="k" if known else colour, lw=1.5, zorder=7)
     else:
         around, radius = np.linspace(0, 2 * np.pi, 40), np.hypot(track.length, track.width) / 2
-        circle = seen(x + radius * np.cos(around), y + radius * np.sin(around))
+        circle = to_view(x + radius * np.cos(around), y + radius * np.sin(around))
         axis.plot(*circle, color=colour if known else WARNING, lw=1.2, ls="--", zorder=6)
     if np.isfinite(motion) and (track.is_off_motion()[k] or track.doubted[k] or not np.isfinite(track.yaw[k])):
-        tip = seen(
+        tip = to_view(
             x + np.array([0, 1]) * np.cos(motion) * track.length, y + np.array([0, 1]) * np.sin(motion) * track.length
         )
         axis.annotate("", tip[:, 1], tip[:, 0], arrowprops={"arrowstyle": "->", "color": WARNING, "lw": 1.5}, zorder=9)
 
 
-def _lanes(axis: Any, log: Recording, seen: Any, reach: float) -> None:
+def _lanes(axis: Any, log: Recording, to_view: Any, reach: float) -> None:
     arrows: list[tuple[float, float, float, float]] = []
     for lane in log.lanes:
         if min(len(lane["left_x_m"] or ()), len(lane["right_x_m"] or ())) < 2:
             continue
-        left, right = seen(lane["left_x_m"], lane["left_y_m"]), seen(lane["right_x_m"], lane["right_y_m"])
+        left, right = to_view(lane["left_x_m"], lane["left_y_m"]), to_view(lane["right_x_m"], lane["right_y_m"])
         around = np.concatenate([left, right[:, ::-1]], axis=1)
         if (around.min(axis=1) > reach).any() or (around.max(axis=1) < -reach).any():
             continue
@@ -179,13 +179,13 @@ def _lanes(axis: Any, log: Recording, seen: Any, reach: float) -> None:
     if arrows:
         axis.quiver(*np.array(arrows).T, angles="xy", scale_units="xy", scale=0.5, color="0.65", width=0.004, zorder=3)
     for line in log.stop_lines:
-        axis.plot(*seen(line[:, 0], line[:, 1]), color="purple", lw=2, zorder=3)
+        axis.plot(*to_view(line[:, 0], line[:, 1]), color="purple", lw=2, zorder=3)
 
 
-def _series(axes: list[Any], row: dict[str, Any], ego: Track, other: Track | None, log: Recording) -> None:
+def _series(axes: list[Any], row: dict[str, Any], ego: Track, other_track: Track | None, log: Recording) -> None:
     first, last = row["t_start_s"] - BEFORE_S, row["t_end_s"] + AFTER_S
     speeds, distances, places, turns = axes
-    for track, colour, name in ((ego, EGO, "ego"), (other, OBJECT, "object")):
+    for track, colour, name in ((ego, EGO, "ego"), (other_track, OBJECT, "object")):
         if track is not None:
             w = (track.t >= first) & (track.t <= last)
             speeds.plot(track.t[w], track.speed[w], ".-", color=colour, label=f"speed {name}", ms=3)
@@ -193,21 +193,24 @@ def _series(axes: list[Any], row: dict[str, Any], ego: Track, other: Track | Non
             turns.plot(track.t[w], np.degrees(np.unwrap(track.yaw[w])), color=colour, label=f"heading {name} deg")
             turns.plot(track.t[w], _beside(track.motion()[w], track.yaw[w]), ":", color=colour, label="of its motion")
     speeds.set_ylabel("m/s")
-    if other is not None:
-        t, distance, ahead, left = apart(ego, other)
+    if other_track is not None:
+        t, distance, ahead, left = apart(ego, other_track)
         w = (t >= first) & (t <= last)
         distances.plot(t[w], distance[w], "k.-", ms=3, label="distance between boxes, m")
         distances.plot(
             t[w], np.clip(ahead[w], -10, None), color="tab:green", label="object's rear ahead of ego's front, m"
         )
         places.plot(
-            t[w], left[w], color="tab:red", label=f"object left of ego, m (widths {ego.width:.1f}, {other.width:.1f})"
+            t[w],
+            left[w],
+            color="tab:red",
+            label=f"object left of ego, m (widths {ego.width:.1f}, {other_track.width:.1f})",
         )
         if w.any():
             distances.set_ylim(-3, min(float(np.nanmax(distance[w])) + 2, 60))
             places.set_ylim(max(float(np.nanmin(left[w])) - 1, -12), min(float(np.nanmax(left[w])) + 1, 12))
     w = (ego.t >= first) & (ego.t <= last)
-    if other is None and w.sum() > 2:
+    if other_track is None and w.sum() > 2:
         distances.plot(
             ego.t[w], np.gradient(ego.speed[w], ego.t[w]), color=EGO, label="acceleration of ego (from speed), m/s2"
         )
@@ -230,10 +233,10 @@ def _beside(motion: Any, yaw: Any) -> Any:
     return np.degrees(shown + np.angle(np.exp(1j * (motion - shown))))
 
 
-def _edges(log: Recording, ego: Track, which: Any) -> tuple[list[float], list[float]]:
+def _edges(log: Recording, ego: Track, indices: Any) -> tuple[list[float], list[float]]:
     """Return the room to the left and right edges of the lane that the ego's middle is on, NaN on none: the one that fits its heading."""
     rooms: tuple[list[float], list[float]] = ([], [])
-    for i in which:
+    for i in indices:
         point = shapely.Point(ego.x[i], ego.y[i])
         on = [log.shapes[k] for k in log.tree.query(point, predicate="intersects")]
         if not on or not np.isfinite(ego.yaw[i]):

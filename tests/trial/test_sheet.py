@@ -80,21 +80,21 @@ class _Axis:
         self.arrows.append((np.asarray(tip) - np.asarray(start), how["arrowprops"]["color"]))
 
 
-def _drawn(car: Track) -> _Axis:
+def _axis_with_box(car: Track) -> _Axis:
     axis = _Axis()
     _box(axis, car, 20, lambda x, y: np.array([np.asarray(x), np.asarray(y)]), EGO)
     return axis
 
 
 def test_a_box_along_its_motion_has_no_arrow_and_its_nose_ahead() -> None:
-    axis = _drawn(track())
+    axis = _axis_with_box(track())
     assert not axis.arrows
     ((nose, _),) = axis.lines
     assert nose[0] - (10 + 8 * 2.0) == pytest.approx([1.2, 2.4])
 
 
 def test_a_box_that_travels_backwards_has_its_nose_at_its_rear() -> None:
-    axis = _drawn(track(turned=np.pi, travel=np.pi))
+    axis = _axis_with_box(track(turned=np.pi, travel=np.pi))
     assert not axis.arrows
     ((nose, _),) = axis.lines
     assert nose[0] - (10 + 8 * 2.0) == pytest.approx([1.2, 2.4])
@@ -102,7 +102,7 @@ def test_a_box_that_travels_backwards_has_its_nose_at_its_rear() -> None:
 
 @pytest.mark.parametrize("car", [track(turned=np.pi / 2), track(turned=np.pi), track(doubted=True)])
 def test_a_box_that_contradicts_its_motion_has_an_arrow_along_it(car: Track) -> None:
-    axis = _drawn(car)
+    axis = _axis_with_box(car)
     ((arrow, colour),) = axis.arrows
     assert colour == WARNING
     assert arrow == pytest.approx([4.8, 0.0])
@@ -110,7 +110,7 @@ def test_a_box_that_contradicts_its_motion_has_an_arrow_along_it(car: Track) -> 
 
 
 def test_without_a_heading_there_is_a_circle_and_the_motion() -> None:
-    axis = _drawn(track()._replace(yaw=np.full(len(T), np.nan), travel=np.full(len(T), np.nan)))
+    axis = _axis_with_box(track()._replace(yaw=np.full(len(T), np.nan), travel=np.full(len(T), np.nan)))
     assert not axis.filled
     ((circle, _),) = axis.lines
     assert np.hypot(*(circle - [[26.0], [20.0]])) == pytest.approx(np.full(40, np.hypot(4.8, 1.8) / 2))

@@ -51,7 +51,7 @@ def look(con: duckdb.DuckDBPyConnection) -> ContactFinder:
 
 
 def ego(lateral: float = 0.0) -> Actor:
-    return moving("ego", WAY, T, 50 + 10 * T, WAY.own + lateral)
+    return moving("ego", WAY, T, 50 + 10 * T, WAY.ego_d + lateral)
 
 
 def trace(*actors: Actor) -> Trace:
@@ -81,7 +81,7 @@ def overlaps(a: Actor, b: Actor) -> set[int]:
 @pytest.mark.parametrize("turned", [0.0, 0.6, 2.2])
 @pytest.mark.parametrize("beside", [0.0, 1.7, 2.9])
 def test_contacts_are_where_the_boxes_overlap(look: ContactFinder, turned: float, beside: float) -> None:
-    car = standing("car", WAY, T, 110.0, WAY.own + beside, turned=turned)
+    car = standing("car", WAY, T, 110.0, WAY.ego_d + beside, turned=turned)
     found = look.new_contacts(trace(ego(), car), None)
     assert {row["t_start_ns"] for row in found} == overlaps(ego(), car)
     assert {(row["ego_id"], row["object_id"], row["severity"]) for row in found} <= {("ego", "car", "critical")}
@@ -92,10 +92,10 @@ def ends_at(gap_m: float, *, loss_mps: float = 10.0, name: str = "ego") -> Actor
     """Return an ego that drives on until it is `gap_m` behind the car at 110 m and loses so much speed from one step to the next."""
     stop = 110.0 - 4.8 - gap_m
     speed = np.where(T < 5.0, 10.0, 10.0 - loss_mps)
-    return replace(moving(name, WAY, T, np.minimum(stop - 50 + 10 * T, stop), WAY.own), vx=speed, vy=0 * T)
+    return replace(moving(name, WAY, T, np.minimum(stop - 50 + 10 * T, stop), WAY.ego_d), vx=speed, vy=0 * T)
 
 
-STRUCK = standing("car", WAY, T, 110.0, WAY.own)
+STRUCK = standing("car", WAY, T, 110.0, WAY.ego_d)
 
 
 def jolts(look: ContactFinder, log: Trace) -> list[tuple[float, float]]:
@@ -156,7 +156,7 @@ def test_a_jolt_waits_for_the_window_if_the_step_is_long(look: ContactFinder) ->
 
 def test_an_actor_that_was_always_near_may_be_towed(look: ContactFinder) -> None:
     jolted = np.where(T < 5.0, 10.0, 0.0)
-    towed = replace(moving("trailer", WAY, T, 50 + 10 * T - 5.1, WAY.own), vx=jolted)
+    towed = replace(moving("trailer", WAY, T, 50 + 10 * T - 5.1, WAY.ego_d), vx=jolted)
     assert jolts(look, trace(replace(ego(), vx=jolted), towed)) == []
 
 
@@ -173,13 +173,13 @@ def test_only_rules_that_are_asked_for_are_told(con: duckdb.DuckDBPyConnection) 
 
 
 def test_steps_that_were_looked_at_are_not_told_again(look: ContactFinder) -> None:
-    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.ego_d))
     steps = [row["t_start_ns"] for row in look.new_contacts(log, None)]
     assert [row["t_start_ns"] for row in look.new_contacts(log, steps[1])] == steps[2:]
 
 
 def test_an_actor_that_was_never_seen_apart_may_be_the_trailer(look: ContactFinder) -> None:
-    trailer = moving("trailer", WAY, T, 50 + 10 * T - 4.5, WAY.own)
+    trailer = moving("trailer", WAY, T, 50 + 10 * T - 4.5, WAY.ego_d)
     assert overlaps(ego(), trailer) == {round(t * NS_PER_S) for t in T}
     assert look.new_contacts(trace(ego(), trailer), None) == []
 
@@ -187,7 +187,7 @@ def test_an_actor_that_was_never_seen_apart_may_be_the_trailer(look: ContactFind
 def test_a_contact_that_lasts_is_told_by_the_looks_after_it(
     con: duckdb.DuckDBPyConnection, look: ContactFinder
 ) -> None:
-    pushed = moving("car", WAY, T, np.maximum(90.0, 50 + 10 * T + 4.0), WAY.own)
+    pushed = moving("car", WAY, T, np.maximum(90.0, 50 + 10 * T + 4.0), WAY.ego_d)
     log = trace(ego(), pushed)
     assert look.new_contacts(part_of(log, 0.0, 3.0), None) == []
     late = part_of(log, 8.0, 9.0)
@@ -203,7 +203,7 @@ def part_of(log: Trace, from_s: float, to_s: float) -> Trace:
 
 
 def test_on_another_level_there_is_no_contact(look: ContactFinder) -> None:
-    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.ego_d))
     ids = log.tables["actor_state"]["actor_id"].to_pylist()
     for height, touches in ((6.0, False), (0.5, True)):
         there = with_column(log, "actor_state", "z_m", [height if each == "car" else 0.0 for each in ids])
@@ -212,7 +212,7 @@ def test_on_another_level_there_is_no_contact(look: ContactFinder) -> None:
 
 @pytest.mark.parametrize(("table", "column"), [("actor_state", "yaw_rad"), ("actor", "width_m")])
 def test_without_a_box_there_is_no_contact(look: ContactFinder, table: str, column: str) -> None:
-    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.own))
+    log = trace(ego(), standing("car", WAY, T, 110.0, WAY.ego_d))
     rows = log.tables[table].to_pylist()
     unknown = with_column(log, table, column, [None if row["actor_id"] == "car" else row[column] for row in rows])
     assert look.new_contacts(unknown, None) == []
@@ -225,7 +225,7 @@ def window(t_end_s: float, findings: list[dict[str, Any]]) -> JudgedWindow:
 
 
 def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactFinder) -> None:
-    rows = look.new_contacts(trace(ego(), standing("car", WAY, T, 110.0, WAY.own)), None)
+    rows = look.new_contacts(trace(ego(), standing("car", WAY, T, 110.0, WAY.ego_d)), None)
     log = AlarmLog({OVERLAP_RULE: 2 * NS_PER_S}, ())
     (alarm,) = log.add_contacts_and_return_new_alarms(rows, 10 * NS_PER_S)
     assert (alarm.is_early, alarm.row["t_start_ns"], alarm.t_end_ns) == (

@@ -20,7 +20,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats import load_map, read_trace
 from drivelint.road.map_reader import MapSource
 from drivelint.watch.sources import sumo, sumo_process
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 from tests.sumo import crossroads, world
 from tests.watch.sumo_processes import processes
 
@@ -100,7 +100,7 @@ def verdicts(logs: list[Path], road: Path) -> list[list[dict[str, Any]]]:
     """Return the verdicts of each log, without what is named after the log."""
     environment = load_map(MapSource(road.name, road.read_bytes()))
     drives = [Drive(read_trace(log, IngestOptions(ego="all")), environment) for log in logs]
-    rows = judged(drives, rules=RULES)
+    rows = verdict_rows(drives, rules=RULES)
     own = {"drive_id", "finding_ids"}
     return [
         [{k: v for k, v in row.items() if k not in own} for row in rows if row["drive_id"] == drive.trace.drive_id]

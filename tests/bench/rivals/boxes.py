@@ -11,7 +11,7 @@ import shapely
 from drivelint.sql import store
 from tests.bench import traffic
 from tests.bench.clock import Span, repeat
-from tests.bench.rivals.other import agree
+from tests.bench.rivals.comparison import agree
 from tests.bench.table import Row
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 LENGTH, WIDTH = 4.8, 1.8
 NEAR_M = 30.0
-_OURS = """
+_CLEARANCE_SQL = """
 CREATE OR REPLACE TEMP TABLE gap AS
 SELECT t_ns, object_id, box_clearance(
         ex * cos(yaw) + ey * sin(yaw), ey * cos(yaw) - ex * sin(yaw), cos(turn), sin(turn), $hl, $hw, $hl, $hw
@@ -46,9 +46,9 @@ class Boxes(NamedTuple):
     y: Floats
     yaw: Floats
 
-    def of(self, chosen: NDArray[np.bool_]) -> Boxes:
+    def of(self, mask: NDArray[np.bool_]) -> Boxes:
         """Return some of them."""
-        return Boxes(self.x[chosen], self.y[chosen], self.yaw[chosen])
+        return Boxes(self.x[mask], self.y[mask], self.yaw[mask])
 
     def polygons(self) -> NDArray[np.object_]:
         """Return them as shapely polygons."""
@@ -64,45 +64,51 @@ def compare(place: Place) -> list[Row]:
     """Compare gaps and overlaps: of every pair, and of those whose centres are near enough to matter."""
     shape, runs = place.sizes.reference, place.sizes.runs
     states, _ = traffic.drive(shape)
-    ego, others = _sides(states, shape)
+    ego, object_boxes = _sides(states, shape)
     rows = []
     with store.connect() as con:
         store.insert(con, "actor_state", _as_read(states))
-        for what, far in (("all pairs", np.inf), (f"pairs nearer than {NEAR_M:.0f} m", NEAR_M)):
-            asked = {"hl": LENGTH / 2, "hw": WIDTH / 2, "far": 1e9 if far == np.inf else far}
-            distance, overlap = _theirs(ego, others, far)
-            _same(con, asked, distance, overlap)
-            theirs = repeat(partial(_theirs, ego, others, far), runs)
-            ours = repeat(partial(con.execute, _OURS, asked), runs)
-            rows += _rows(what, len(distance), theirs, ours)
+        for label, far in (("all pairs", np.inf), (f"pairs nearer than {NEAR_M:.0f} m", NEAR_M)):
+            params = {"hl": LENGTH / 2, "hw": WIDTH / 2, "far": 1e9 if far == np.inf else far}
+            distance, overlap = _theirs(ego, object_boxes, far)
+            _same(con, params, distance, overlap)
+            their_time = repeat(partial(_theirs, ego, object_boxes, far), runs)
+            our_time = repeat(partial(con.execute, _CLEARANCE_SQL, params), runs)
+            rows += _rows(label, len(distance), their_time, our_time)
     return rows
 
 
-def _rows(what: str, pairs: int, theirs: Span, ours: Span) -> list[Row]:
+def _rows(label: str, pairs: int, their_time: Span, our_time: Span) -> list[Row]:
     return [
         Row(
             "shapely",
-            f"{what}: shapely",
-            theirs.wall,
-            cpu=theirs.cpu,
+            f"{label}: shapely",
+            their_time.wall,
+            cpu=their_time.cpu,
             note=f"{pairs:,} pairs; boxes, distance, intersects",
         ),
-        Row("shapely", f"{what}: ours", ours.wall, cpu=ours.cpu, note="join by time and separating axes, in SQL"),
-        Row("shapely", f"{what}: ours is faster", theirs.wall / ours.wall, "x"),
+        Row(
+            "shapely",
+            f"{label}: ours",
+            our_time.wall,
+            cpu=our_time.cpu,
+            note="join by time and separating axes, in SQL",
+        ),
+        Row("shapely", f"{label}: ours is faster", their_time.wall / our_time.wall, "x"),
     ]
 
 
-def _theirs(ego: Boxes, others: Boxes, far: float) -> tuple[Floats, NDArray[np.bool_]]:
-    near = np.hypot(others.x - ego.x, others.y - ego.y) <= far
-    a, b = ego.of(near).polygons(), others.of(near).polygons()
+def _theirs(ego: Boxes, object_boxes: Boxes, far: float) -> tuple[Floats, NDArray[np.bool_]]:
+    near = np.hypot(object_boxes.x - ego.x, object_boxes.y - ego.y) <= far
+    a, b = ego.of(near).polygons(), object_boxes.of(near).polygons()
     shapely.prepare(a)
     return np.asarray(shapely.distance(a, b)), np.asarray(shapely.intersects(a, b))
 
 
 def _same(
-    con: duckdb.DuckDBPyConnection, asked: dict[str, float], distance: Floats, overlap: NDArray[np.bool_]
+    con: duckdb.DuckDBPyConnection, params: dict[str, float], distance: Floats, overlap: NDArray[np.bool_]
 ) -> None:
-    con.execute(_OURS, asked)
+    con.execute(_CLEARANCE_SQL, params)
     found = con.execute(
         "SELECT count(*), sum(greatest(clearance_m, 0.0)), min(clearance_m), count(*) FILTER (clearance_m <= 0) FROM gap"
     ).fetchall()[0]

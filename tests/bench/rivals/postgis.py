@@ -23,7 +23,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.formats import read_trace
 from drivelint.sql import store
 from tests.bench.clock import now, repeat
-from tests.bench.rivals.other import agree
+from tests.bench.rivals.comparison import agree
 from tests.bench.rivals.postgres import database
 from tests.bench.table import Bar, Row
 
@@ -107,7 +107,7 @@ def compare(place: Place) -> list[Row]:
             base.renew()
             theirs.extend(base.run("\n".join(script[part] for part in ("load", "index", "derive", "assert"))))
 
-        ours = repeat(lambda: mine.append(_ours(place)), runs)
+        ours = repeat(lambda: mine.append(_our_answer(place)), runs)
         set_based = repeat(whole, runs)
         _agree(mine[-1], theirs[-1])
         begin = now()
@@ -141,7 +141,7 @@ def _read(place: Place) -> Drive:
     return Drive(trace, MapLibrary(DriveInput(map=place.road)).find(trace)[0])
 
 
-def _ours(place: Place) -> Answer:
+def _our_answer(place: Place) -> Answer:
     """Judge the reference drive by the whole catalogue, and answer what PostGIS is asked."""
     found: list[Answer] = []
 
@@ -176,6 +176,6 @@ def _script(place: Place) -> tuple[dict[str, str], list[int]]:
     return script, times
 
 
-def _agree(mine: Answer, theirs: Answer) -> None:
-    for what, a, b in zip(ANSWERS, mine, theirs, strict=True):
+def _agree(our_answer: Answer, their_answer: Answer) -> None:
+    for what, a, b in zip(ANSWERS, our_answer, their_answer, strict=True):
         agree(what, a, b, _TOLERANCE.get(what, 1e-6))

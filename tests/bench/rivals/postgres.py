@@ -71,15 +71,15 @@ def database() -> Iterator[Database]:
         yield from _with_postgis(Database(psql, url))
 
 
-def _with_postgis(found: Database) -> Iterator[Database]:
+def _with_postgis(database: Database) -> Iterator[Database]:
     try:
-        found.run("CREATE EXTENSION IF NOT EXISTS postgis")
+        database.run("CREATE EXTENSION IF NOT EXISTS postgis")
     except RuntimeError as error:
         raise Skipped(f"no PostGIS: {error}") from error
     try:
-        yield found
+        yield database
     finally:
-        found.drop()
+        database.drop()
 
 
 @contextmanager

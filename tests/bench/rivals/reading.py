@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import read_trace
 from tests.bench.clock import Span, median, repeat
-from tests.bench.rivals.other import agree, ask
+from tests.bench.rivals.comparison import agree, ask
 from tests.bench.table import Bar, Row
 
 if TYPE_CHECKING:

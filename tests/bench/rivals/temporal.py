@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from drivelint.sql import store
 from tests.bench import traffic
 from tests.bench.clock import Span, median, repeat
-from tests.bench.rivals.other import agree, ask
+from tests.bench.rivals.comparison import agree, ask
 from tests.bench.table import Bar, Row
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ FORMULAS = (
     f"always[0s,{WINDOW_S}s](gap >= 2.0)",
     f"eventually[0s,{WINDOW_S}s](gap >= 20.0)",
 )
-_OURS = """
+_ROBUSTNESS_SQL = """
 CREATE OR REPLACE TEMP TABLE robust AS
 SELECT t_ns, min(speed - 8.0) OVER (ORDER BY t_ns ROWS BETWEEN {n} PRECEDING AND CURRENT ROW) AS f0,
     min(gap - 2.0) OVER ahead AS f1, max(gap - 20.0) OVER ahead AS f2
@@ -57,7 +57,7 @@ def compare(place: Place) -> list[Row]:
         file = place.home / "signals.json"
         file.write_text(json.dumps(asked), encoding="utf-8")
         theirs = ask("rtamt_script.py", "rtamt", PYTHON, file, runs)
-        ours = repeat(partial(con.execute, _OURS.format(n=WINDOW_S * shape.hertz)), runs)
+        ours = repeat(partial(con.execute, _ROBUSTNESS_SQL.format(n=WINDOW_S * shape.hertz)), runs)
         found = con.execute("SELECT f0, f1, f2 FROM robust ORDER BY t_ns").fetchall()
     for formula, robustness, mine in zip(FORMULAS, theirs["robustness"], zip(*found, strict=True), strict=True):
         for a, b in zip(mine, robustness, strict=True):

@@ -10,7 +10,7 @@ from drivelint.engine.batch import Drive
 from tests.formats.logs import read
 from tests.formats.osi import osi_log
 from tests.formats.osi.bulbs import bulb, write
-from tests.scenes import derived, judged, rows
+from tests.scenes import derived, rows, verdict_rows
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
@@ -68,14 +68,16 @@ def test_only_changes_of_the_headlights_are_told_and_what_is_not_known_is_one(tm
 @pytest.mark.parametrize(("head", "verdict"), [(ON, "pass"), (OFF, "fail"), (UNKNOWN, "unknown"), (None, "unknown")])
 def test_headlights_at_night_are_judged(tmp_path: Path, head: int | None, verdict: str) -> None:
     trace = read(write(tmp_path, osi_log.drive(30, head=head)), conditions=NIGHT)
-    (found,) = judged([Drive(trace, None)], rules=["ukhc.r113.headlights"])
+    (found,) = verdict_rows([Drive(trace, None)], rules=["ukhc.r113.headlights"])
     assert (found["verdict"], found["rule_id"]) == (verdict, "ukhc.r113.headlights")
 
 
 @pytest.mark.ci
 def test_headlights_that_become_unknown_are_no_pass(tmp_path: Path) -> None:
     frames = [osi_log.drive(30, head=UNKNOWN if k == 20 else ON)[k] for k in range(30)]
-    (found,) = judged([Drive(read(write(tmp_path, frames), conditions=NIGHT), None)], rules=["ukhc.r113.headlights"])
+    (found,) = verdict_rows(
+        [Drive(read(write(tmp_path, frames), conditions=NIGHT), None)], rules=["ukhc.r113.headlights"]
+    )
     assert found["verdict"] == "unknown"
 
 
@@ -89,7 +91,7 @@ def test_a_log_with_lamps_declares_nothing_of_what_the_ego_means(tmp_path: Path)
 def test_the_headlights_of_a_real_log() -> None:
     trace = read(shared("osi/MovingHostWithStopLineVariations.mcap"), conditions=NIGHT)
     assert events(trace) == [("0", 0.0, "headlights", "off")]
-    (found,) = judged([Drive(trace, None)], rules=["ukhc.r113.headlights"])
+    (found,) = verdict_rows([Drive(trace, None)], rules=["ukhc.r113.headlights"])
     assert (found["verdict"], found["reason_code"]) == ("fail", "violated")
     assert "not known" not in found["reason"]
 

@@ -14,7 +14,7 @@ from drivelint.engine.batch import Drive
 from drivelint.formats import load_map, read_trace
 from drivelint.road.map_reader import MapSource
 from tests.formats.logs import actors, put, quality, read, states
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
@@ -203,6 +203,6 @@ def test_the_reported_ride_has_no_contact() -> None:
         trace = read_trace(log, IngestOptions(ego=ego))
         assert {(row["t_ns"] / 1e9, row["actor_id"]) for row in states(trace)} == expected
         assert quality(trace)["riding"]["n"] == riding
-        found = judged([Drive(trace, environment)], rules=("ukhc.no-collision",))
+        found = verdict_rows([Drive(trace, environment)], rules=("ukhc.no-collision",))
         assert "fail" not in {row["verdict"] for row in found}
         assert "pass" in {row["verdict"] for row in found if row["object_id"] == "p1"}

@@ -29,7 +29,7 @@ scenes:
 """
 
 
-def drawn(folder: Path, *actors: str, roads: str = "country", side: str = "right") -> Scene:
+def scene_of(folder: Path, *actors: str, roads: str = "country", side: str = "right") -> Scene:
     """Return the scene with these actors, each a line of YAML; who has no name is the ego."""
     lines = [f"    {actor if actor[0] != '{' else f'ego: {actor}'}\n" for actor in actors]
     file = folder / "scenes.yml"
@@ -38,18 +38,18 @@ def drawn(folder: Path, *actors: str, roads: str = "country", side: str = "right
     return scenes_of(read.scenes, read.roads)[0]
 
 
-def column(scene: Scene, name: str, who: str = "ego") -> Any:
+def column(scene: Scene, name: str, actor_id: str = "ego") -> Any:
     """Return a column of an actor's states."""
     table = scene.tables()["actor_state"]
     kept = [
         value
         for value, actor in zip(table[name].to_pylist(), table["actor_id"].to_pylist(), strict=True)
-        if actor == who
+        if actor == actor_id
     ]
     return kept if isinstance(kept[0], str) or None in kept else np.array(kept)
 
 
-def seconds(scene: Scene, who: str = "ego") -> Floats:
+def seconds(scene: Scene, actor_id: str = "ego") -> Floats:
     """Return the times of an actor's states."""
-    times: Floats = column(scene, "t_ns", who) / 1e9
+    times: Floats = column(scene, "t_ns", actor_id) / 1e9
     return times

@@ -17,7 +17,7 @@ TOPICS: Final = sorted(file.stem for file in SCENES.glob("*.yml") if "\nscenes:\
 """The files that have scenes; they are not parsed while tests are collected."""
 
 
-def drawn(topic: str, name: str, folder: Path) -> Drive:
+def scene_drive(topic: str, name: str, folder: Path) -> Drive:
     """Write a scene of a topic's file into the folder, and return what is read of that; where both hands are drawn: the right one."""
     file = document.read(SCENES / f"{topic}.yml")
     scene = scenes_of([text for text in file.scenes if text.name == name], file.roads)[0]

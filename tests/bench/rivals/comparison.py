@@ -28,7 +28,7 @@ def ask(script: str, module: str, variable: str, *arguments: object) -> dict[str
     return found
 
 
-def agree(what: str, ours: float, theirs: float, tolerance: float = 1e-6) -> None:
+def agree(quantity: str, our_value: float, their_value: float, tolerance: float = 1e-6) -> None:
     """Refuse to compare times of different answers. Errors: `AssertionError`."""
-    if not abs(ours - theirs) <= tolerance * max(1.0, abs(ours), abs(theirs)):
-        raise AssertionError(f"{what}: ours {ours}, theirs {theirs}")
+    if not abs(our_value - their_value) <= tolerance * max(1.0, abs(our_value), abs(their_value)):
+        raise AssertionError(f"{quantity}: ours {our_value}, theirs {their_value}")

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def both(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str, float], list[str]]:
+def run_comparison(folder: Path, seconds: int, seed: int, per_kind: int) -> tuple[dict[str, float], list[str]]:
     """Return the figures of a comparison, and what differs."""
     files = world.simulate(folder / "log", seconds=seconds, seed=seed)
     net = reading.read_net(files.net)
