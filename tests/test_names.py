@@ -91,7 +91,7 @@ def test_expected_is_a_name_in_tests_alone() -> None:
     assert [is_bare("expected", bare, of_function=False) for _, bare in ROOTS] == [True, False]
 
 
-@pytest.mark.parametrize(("files", "bare"), folders())
+@pytest.mark.parametrize(("files", "bare"), list(folders()))
 def test_no_name_is_a_bare_participle_or_pronoun(files: list[Path], bare: frozenset[str]) -> None:
     assert not [
         f"{path.relative_to(ROOT)}:{line} {name}"

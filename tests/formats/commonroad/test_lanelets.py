@@ -276,7 +276,7 @@ def test_lanes_of_a_ban_on_overtaking_with_a_plate_are_named(
     assert values(environment, "map_quality", "lanelet_id", check_id="sign_condition_unread") == unread
     if unread:
         message = f"sign 90 applies only as its plates state ({elements[1][0]}): when it applies is not known"
-        assert ("sign_condition_unread", message) in said(environment)
+        assert ("sign_condition_unread", message) in quality_rows(environment)
 
 
 def test_what_is_not_read_is_named() -> None:

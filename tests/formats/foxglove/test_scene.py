@@ -14,7 +14,7 @@ from drivelint.errors import TraceError
 from tests.formats.foxglove import foxglove_log as fox
 from tests.formats.logs import actors, at, log, quality, read, states
 from tests.formats.osi import osi_log
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -236,7 +236,7 @@ def with_walker(word: str = "pedestrian", **bodies: Any) -> list[fox.Message]:
     ]
 
 
-@BOTH
+@BOTH_ENCODINGS
 @pytest.mark.parametrize(
     ("bodies", "size", "verdict"),
     [
@@ -249,12 +249,12 @@ def with_walker(word: str = "pedestrian", **bodies: Any) -> list[fox.Message]:
 def test_a_road_user_without_a_cube_is_one_all_the_same(
     tmp_path: Path, encoding: str, bodies: dict[str, Any], size: tuple[float | None, ...], verdict: str
 ) -> None:
-    trace = seen(tmp_path, with_walker(**bodies), encoding, ego="car")
+    trace = trace_of(tmp_path, with_walker(**bodies), encoding, ego="car")
     found = actors(trace)["walker"]
     assert (found["actor_class"], found["length_m"], found["width_m"], found["height_m"]) == ("pedestrian", *size)
     assert (at(trace, "walker", T0 + 0.5)["x_m"], at(trace, "walker", T0 + 0.5)["y_m"]) == (18.0, 2.0)
     assert "no_box" not in quality(trace)
-    (result,) = judged([Drive(trace, None)], rules=["ukhc.no-collision"])
+    (result,) = verdict_rows([Drive(trace, None)], rules=["ukhc.no-collision"])
     assert result["verdict"] == verdict
 
 
@@ -262,7 +262,7 @@ def test_a_road_user_without_a_cube_is_one_all_the_same(
     ("word", "bodies"), [("", CYLINDER), ("lane", CYLINDER), ("pedestrian", {}), ("pedestrian", {"models": []})]
 )
 def test_what_has_no_class_or_no_body_is_no_road_user(tmp_path: Path, word: str, bodies: dict[str, Any]) -> None:
-    trace = seen(tmp_path, with_walker(word, **bodies), ego="car")
+    trace = trace_of(tmp_path, with_walker(word, **bodies), ego="car")
     assert set(actors(trace)) == {"car"}
     assert quality(trace)["no_box"]["n"] == 30
 

@@ -13,7 +13,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.formats.sumo import fcd_xml
 from tests.formats.logs import actors, at, log, put, quality, read, states
 from tests.formats.sumo.fcd_text import ROWS, TYPES, csv, table, xml
-from tests.scenes import judged
+from tests.scenes import verdict_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -55,7 +55,7 @@ def test_rules_about_others_are_unknown_if_only_some_road_users_were_written(
     text = xml().replace("<sumoConfiguration/>", f"<sumoConfiguration><output>{option}</output></sumoConfiguration>")
     trace = read(put(tmp_path / "a.xml", text), ego="a.0")
     assert ("road_users_left_out" in quality(trace)) == is_selection
-    (found,) = judged([Drive(trace, None)], rules=["ukhc.no-collision"])
+    (found,) = verdict_rows([Drive(trace, None)], rules=["ukhc.no-collision"])
     assert (found["verdict"], found["reason_code"]) == (
         ("unknown", "missing_road_users") if is_selection else ("pass", "kept")
     )
