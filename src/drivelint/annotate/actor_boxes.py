@@ -36,13 +36,13 @@ RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 def box_rows_and_step_interval(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
     """Return the rows with a position and a heading, by time and actor, and n. Above `MAX_BOXES` rows, only every n-th step is included."""
-    placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
-    every = max(1, -(-len(placed) // MAX_BOXES))
+    rows = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
+    every = max(1, -(-len(rows) // MAX_BOXES))
     if every > 1:
-        steps, step = np.unique(tracks.t_ns[placed], return_inverse=True)
-        placed = placed[step % every == 0] if len(steps) > every else placed
-    order = np.argsort(tracks.t_ns[placed], kind="stable")
-    return placed[order], every
+        steps, step = np.unique(tracks.t_ns[rows], return_inverse=True)
+        rows = rows[step % every == 0] if len(steps) > every else rows
+    order = np.argsort(tracks.t_ns[rows], kind="stable")
+    return rows[order], every
 
 
 def scene_update_chunks(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
@@ -129,11 +129,11 @@ def _join_headers_and_boxes(
     out[place[is_start, None] + np.arange(starts.shape[1])] = starts
     box_place = place[~is_start]
     for w in np.unique(head_width):
-        chosen = np.flatnonzero(head_width == w)
-        names, which = np.unique(actor[chosen], return_inverse=True)
+        indices = np.flatnonzero(head_width == w)
+        names, name_index = np.unique(actor[indices], return_inverse=True)
         table = np.stack([np.frombuffer(heads[name], np.uint8) for name in names])
-        piece = np.concatenate([table[which], tails[chosen]], axis=1)
-        out[box_place[chosen, None] + np.arange(piece.shape[1])] = piece
+        piece = np.concatenate([table[name_index], tails[indices]], axis=1)
+        out[box_place[indices, None] + np.arange(piece.shape[1])] = piece
     return out.tobytes(), place[is_start]
 
 

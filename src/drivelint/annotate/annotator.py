@@ -88,8 +88,8 @@ class Annotator:
             self._release_memory()
         for drive in drives:
             name = drive.trace.drive_id
-            mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
-            verdicts, findings, row, spaces, chains, measures, margins = mine
+            drive_tables = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
+            verdicts, findings, row, spaces, chains, measures, margins = drive_tables
             alone = Result(
                 verdicts,
                 findings,

@@ -56,7 +56,7 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
     names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
     poses = {name: tracks.poses_at(name, times) for name in names}
     out = []
-    for t, shown in sorted(by_time.items()):
+    for t, space_rows in sorted(by_time.items()):
         time = clock.log_time_at(t)
         entities = [
             draw.entity(
@@ -64,7 +64,7 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
                 time,
                 _danger_space_shapes(row, line_of) + _role_labels(row, poses, step[t]),
             )
-            for row in shown
+            for row in space_rows
         ]
         out.append(Message(time, draw.deletion_of_all(time) + b"".join(entities)))
     return out
@@ -116,10 +116,10 @@ def _role_labels(row: dict[str, Any], poses: Mapping[str, ActorPoses], step: int
 
 def _danger_space_shapes(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes:
     """Return the danger spaces of the ego and the oncoming vehicle (OV) at one step."""
-    own = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
-    theirs = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
+    ego_space = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
+    oncoming_space = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
     parts = []
-    for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
+    for (s, d, half, sd), direction, met in ((ego_space, 1, row["av_met"]), (oncoming_space, -1, row["ov_met"])):
         if None not in (row["chain_id"], s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
             if strip := _left_and_right_edges_of_strip(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):

@@ -69,18 +69,18 @@ class MarkerAtStep(NamedTuple):
 
 def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, str]) -> list[Marker]:
     """Return markers: first of findings by severity, during their failing steps; then of near misses, around their worst step."""
-    drawn = [
+    spans = [
         (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + LEAST_DRAW_AFTER_EVENT_NS))
         for row in sorted(findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
     ]
-    drawn += [
+    spans += [
         (row, NEAR_MISS_COLOUR, t - DRAW_BEFORE_NEAR_MISS_NS, t + LEAST_DRAW_AFTER_EVENT_NS)
         for row in verdicts.filter(verdicts["near_miss"]).to_pylist()
         if (t := row["t_ref_ns"] if row["t_worst_ns"] is None else row["t_worst_ns"]) is not None
     ]
     return [
         Marker(row["ego_id"], row["object_id"], start, end, colour, headline(row, sense_by_rule))
-        for row, colour, start, end in drawn
+        for row, colour, start, end in spans
     ]
 
 
@@ -91,10 +91,10 @@ def messages(drawn_markers: Sequence[Marker], tracks: Tracks, clock: LogClock) -
     frames_at: dict[int, list[MarkerAtStep]] = {}
     for window, (times, behind) in zip(drawn_markers, steps, strict=True):
         thinned = times[::every]
-        ego = _boxes_of_actor(tracks, window.ego_id, thinned)
-        other = _boxes_of_actor(tracks, window.object_id, thinned)
+        ego_boxes = _boxes_of_actor(tracks, window.ego_id, thinned)
+        object_boxes = _boxes_of_actor(tracks, window.object_id, thinned)
         for k, t in enumerate(thinned.tolist()):
-            frames_at.setdefault(t, []).append(MarkerAtStep(window, ego[k], other[k]))
+            frames_at.setdefault(t, []).append(MarkerAtStep(window, ego_boxes[k], object_boxes[k]))
         if behind is not None:
             frames_at.setdefault(behind, [])
     out = []
@@ -117,8 +117,8 @@ def _boxes_of_actor(tracks: Tracks, name: str | None, times: Times) -> list[Box 
         return [None] * len(times)
     p = tracks.poses_at(name, times)
     z = np.nan_to_num(p.z)
-    known = np.isfinite(p.x) & np.isfinite(p.y) & np.isfinite(p.yaw)
-    columns = (p.x.tolist(), p.y.tolist(), z.tolist(), p.yaw.tolist(), known.tolist())
+    is_known = np.isfinite(p.x) & np.isfinite(p.y) & np.isfinite(p.yaw)
+    columns = (p.x.tolist(), p.y.tolist(), z.tolist(), p.yaw.tolist(), is_known.tolist())
     return [Box(*row[:4], p.length, p.width) if row[4] else None for row in zip(*columns, strict=True)]
 
 
@@ -129,12 +129,12 @@ def _entities_at_step(step_markers: list[MarkerAtStep], time: int) -> Iterator[b
     for frame in step_markers:
         pairs.setdefault((frame.marker.ego_id, frame.marker.object_id), frame)
         egos.setdefault(frame.marker.ego_id, []).append(frame)
-    for (ego, other), frame in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
-        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair_outlines(frame))
+    for (ego, object_id), frame in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
+        yield draw.entity(ego if object_id is None else f"{ego} and {object_id}", time, _pair_outlines(frame))
     for ego, ego_frames in sorted(egos.items()):
         if (box := ego_frames[0].ego) is not None:
             more = [f"and {len(ego_frames) - MAX_LABEL_LINES} more"] if len(ego_frames) > MAX_LABEL_LINES else []
-            text = "\n".join([*(one.marker.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
+            text = "\n".join([*(step_marker.marker.text for step_marker in ego_frames[:MAX_LABEL_LINES]), *more])
             label = draw.label(box.x, box.y + LABEL_OFFSET_FROM_EGO_M, box.z + 2.0, text, ego_frames[0].marker.colour)
             yield draw.entity(f"notes on {ego}", time, label)
 

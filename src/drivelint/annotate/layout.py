@@ -21,7 +21,9 @@ _MARGIN_PLOT_ID: Final = "Plot!drivelint-margins"
 def layout_json(series: Iterable[MarginSeries]) -> bytes:
     """Return the layout whose plot of margins shows the worst rules; the same series give the same bytes."""
     content = json.loads((Path(__file__).parent / "layout.json").read_bytes())
-    content["configById"][_MARGIN_PLOT_ID]["paths"] += [_plot_line(one) for one in sorted(series)[:MAX_SERIES]]
+    content["configById"][_MARGIN_PLOT_ID]["paths"] += [
+        _plot_line(rule_series) for rule_series in sorted(series)[:MAX_SERIES]
+    ]
     return json.dumps(content, indent=2).encode() + b"\n"
 
 

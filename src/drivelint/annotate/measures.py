@@ -42,8 +42,8 @@ def measure_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
 
 def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]:
     """Return rule -> its margins in time order; `rows`: one drive's rows of `evidence/least_margin.sql`."""
-    found = rows.drop_columns("drive_id").to_pylist()
-    by_rule = groupby(found, key=lambda row: str(row["rule_id"]))
+    margin_rows = rows.drop_columns("drive_id").to_pylist()
+    by_rule = groupby(margin_rows, key=lambda row: str(row["rule_id"]))
     return {
         rule: sorted(_json_messages(list(steps), clock), key=lambda message: message.log_time)
         for rule, steps in by_rule
@@ -58,8 +58,8 @@ def margin_topic(rule_id: str) -> str:
 def margin_series(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[MarginSeries]:
     """Return the series that have margins; `rows`: result of `evidence/least_margin.sql`."""
     about = {rule["rule_id"]: rule for rule in rules}
-    measured = rows.filter(rows["margin"].is_valid()).select(["rule_id", "profile"])
-    keys = measured.group_by(["rule_id", "profile"]).aggregate([]).to_pylist()
+    margin_rows = rows.filter(rows["margin"].is_valid()).select(["rule_id", "profile"])
+    keys = margin_rows.group_by(["rule_id", "profile"]).aggregate([]).to_pylist()
     return {
         MarginSeries(SEVERITIES.index(rule["severity"]), rule["rule_id"], key["profile"] or "", rule["unit"] or "")
         for key in keys
@@ -69,5 +69,5 @@ def margin_series(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[Mar
 
 def _json_messages(rows: list[dict[str, Any]], clock: LogClock) -> list[Message]:
     times = clock.log_times(np.array([row["t_ns"] for row in rows], np.int64)).tolist()
-    known = ({key: value for key, value in row.items() if replace_non_finite(value) is not None} for row in rows)
-    return [Message(time, msgspec.json.encode(row)) for time, row in zip(times, known, strict=True)]
+    known_rows = ({key: value for key, value in row.items() if replace_non_finite(value) is not None} for row in rows)
+    return [Message(time, msgspec.json.encode(row)) for time, row in zip(times, known_rows, strict=True)]

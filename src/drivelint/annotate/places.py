@@ -43,11 +43,11 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
     """
     rows = _thinned_rows(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
     degrees = geo.longitude_latitude(_positions(tracks, rows))
-    known = np.isfinite(degrees).all(axis=1)
+    is_known = np.isfinite(degrees).all(axis=1)
     times = clock.log_times(tracks.t_ns[rows])
     return [
         Message(time, wire.doubles(latitude, longitude) + wire.time(6, time) + wire.text(7, frame))
-        for time, (longitude, latitude) in zip(times[known].tolist(), degrees[known].tolist(), strict=True)
+        for time, (longitude, latitude) in zip(times[is_known].tolist(), degrees[is_known].tolist(), strict=True)
     ]
 
 
@@ -83,10 +83,10 @@ def _feature(kind: str, geometry: dict[str, Any], facts: dict[str, Any]) -> dict
 
 
 def _lane_outlines(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
-    known = np.isfinite(tracks.x) & np.isfinite(tracks.y)
-    if road is None or not known.any():
+    is_known = np.isfinite(tracks.x) & np.isfinite(tracks.y)
+    if road is None or not is_known.any():
         return
-    for name, outline in road.drivable_outlines(tracks.x[known], tracks.y[known]):
+    for name, outline in road.drivable_outlines(tracks.x[is_known], tracks.y[is_known]):
         yield (
             "lane",
             name,

@@ -91,8 +91,8 @@ def _foxglove_log_message(row: dict[str, Any], time: int, sense_by_rule: Mapping
     critical = (row["verdict"], row["severity"]) == ("fail", "critical")
     level = foxglove.ERROR if critical else _LEVEL_OF_VERDICT[row["verdict"]]
     # a reason that states the numbers needs no headline with the same numbers
-    said = f"{_outcome_rule_and_object(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
-    text = f"{said} {row['reason'][:1].upper()}{row['reason'][1:]}"
+    opening = f"{_outcome_rule_and_object(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
+    text = f"{opening} {row['reason'][:1].upper()}{row['reason'][1:]}"
     return Message(
         time, wire.time(1, time) + wire.integer(2, level) + wire.text(3, text) + wire.text(4, row["rule_id"])
     )
@@ -121,14 +121,14 @@ def _outcome_rule_and_object(row: dict[str, Any]) -> str:
     word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
     possible = "POSSIBLE " if "n_copies" in row and certainty(row) == POSSIBLE else ""
     profile = f" [{row['profile']}]" if row["profile"] else ""
-    who = f", {row['object_id']}" if row["object_id"] else ""
-    return f"{possible}{word} {row['rule_id'].partition('.')[2]}{profile}{who}"
+    object_words = f", {row['object_id']}" if row["object_id"] else ""
+    return f"{possible}{word} {row['rule_id'].partition('.')[2]}{profile}{object_words}"
 
 
 def _json_message(row: dict[str, Any], log_time: int) -> Message:
     # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
-    known = {key: value for key, value in row.items() if replace_non_finite(value) is not None}
-    return Message(log_time, msgspec.json.encode(known))
+    known_fields = {key: value for key, value in row.items() if replace_non_finite(value) is not None}
+    return Message(log_time, msgspec.json.encode(known_fields))
 
 
 def _sort_by_log_time(messages: list[Message]) -> list[Message]:

@@ -74,8 +74,8 @@ class Tracks:
         k = np.searchsorted(times, t_ns, side="right") - 1
         row = span.start + np.clip(k, 0, None)
         gap = MAX_GAP_PERIODS * float(np.median(np.diff(times))) if len(times) > 1 else 0.0
-        known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
-        x, y, z, yaw = (np.where(known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
+        is_known = (k >= 0) & (t_ns - self.t_ns[row] <= gap)
+        x, y, z, yaw = (np.where(is_known, column[row], np.nan) for column in (self.x, self.y, self.z, self.yaw))
         length, width, _ = map(float, self.sizes[self.actor[span.start]])
         return ActorPoses(x, y, z, yaw, length, width)
 
@@ -85,8 +85,8 @@ def tracks(tables: Mapping[str, pa.Table]) -> Tracks:
     states = tables["actor_state"]
     codes = pc.dictionary_encode(states["actor_id"].combine_chunks())
     names = codes.dictionary.to_pylist()
-    known = tables["actor"]
-    about = known.take(pc.index_in(codes.dictionary, value_set=known["actor_id"].combine_chunks()))
+    actors = tables["actor"]
+    about = actors.take(pc.index_in(codes.dictionary, value_set=actors["actor_id"].combine_chunks()))
     return Tracks(
         names,
         about["actor_class"].to_pylist(),

@@ -136,16 +136,16 @@ class _ChannelWriter:
         self._write_messages("danger_spaces", scene, danger_spaces.messages(drive.spaces, drive.chains, tracks, times))
         markers = finding_markers.markers(verdicts, findings, senses)
         self._write_messages("markers", scene, finding_markers.messages(markers, tracks, times))
-        judged = result_messages.verdict_messages(verdicts, times, start)
-        self._write_messages("verdicts", result_messages.message_schema("verdict"), judged)
+        verdict_messages = result_messages.verdict_messages(verdicts, times, start)
+        self._write_messages("verdicts", result_messages.message_schema("verdict"), verdict_messages)
         self._write_messages(
             "findings", result_messages.message_schema("finding"), result_messages.finding_messages(findings, times)
         )
         self._write_messages(
             "events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses)
         )
-        said = result_messages.foxglove_log_messages(verdicts, findings, times, start, senses)
-        self._write_messages("log", foxglove.schema("Log"), said)
+        log_messages = result_messages.foxglove_log_messages(verdicts, findings, times, start, senses)
+        self._write_messages("log", foxglove.schema("Log"), log_messages)
         self._write_messages(
             "measures", result_messages.message_schema("measures"), measures.measure_messages(drive.measures, times)
         )
@@ -186,7 +186,7 @@ class _ChannelWriter:
     def _metadata(self, step_interval: int) -> dict[str, str]:
         """Return the basis of the verdicts: tool, log, map, rules with their versions."""
         row = self._drive.result.drives.to_pylist()[0]
-        known = (
+        columns = (
             "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",
             "handedness_source",
         )  # fmt: skip
@@ -196,7 +196,7 @@ class _ChannelWriter:
             "version": __version__,
             "duckdb": duckdb.__version__,
             "output_schema": str(OUTPUT_VERSION),
-            **{key: str(row[key]) for key in known if row[key] is not None},
+            **{key: str(row[key]) for key in columns if row[key] is not None},
             **{f"rule {rule['rule_id']}": rule["rule_version"] for rule in self._rules},
             **({"boxes": f"every {step_interval}th step"} if step_interval > 1 else {}),
             **({"time": f"log time = time of the trace + {shift} ns"} if shift else {}),

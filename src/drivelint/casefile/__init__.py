@@ -82,9 +82,9 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
 
     def categories(self) -> set[str]:
         """Return the categories that this case shows: those in `shows`, or else those of `CATEGORIES` in its name."""
-        said = {self.shows} if isinstance(self.shows, str) else set(self.shows)
+        names = {self.shows} if isinstance(self.shows, str) else set(self.shows)
         words = re.sub(r"[\s_-]+", "_", self.name.lower())
-        return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
+        return names or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
 def read_cases(rule: Rule) -> list[Case]:
@@ -110,9 +110,9 @@ def read_cases(rule: Rule) -> list[Case]:
 def _case_problems(rule: Rule, cases: Sequence[Case]) -> list[str]:
     """Return the problems of the cases without those of their scenes, each with file, line and case."""
     problems: list[str] = []
-    seen: dict[str, Case] = {}
+    case_by_name: dict[str, Case] = {}
     for case in cases:
-        first = seen.setdefault(case.name, case)
+        first = case_by_name.setdefault(case.name, case)
         if first is not case:
             place = f"{cases_path(rule)}:{case.line}"
             problems.append(f"{place}: case {case.name!r} has the name of the case in line {first.line}")
@@ -123,11 +123,11 @@ def _case_problems(rule: Rule, cases: Sequence[Case]) -> list[str]:
 
 def _unknown_names(rule: Rule, case: Case) -> Iterator[str]:
     """Yield the parameters and missing signals of a case that the rule does not have."""
-    known = ", ".join(rule.params) or "none"
+    param_names = ", ".join(rule.params) or "none"
     for name in sorted(case.params.keys() - rule.params.keys()):
         near = nearest_word(name, rule.params)
-        meant = f"did you mean {near!r}?" if near else f"it has: {known}"
-        yield f"params: {rule.id} has no parameter {name!r}; {meant}"
+        advice = f"did you mean {near!r}?" if near else f"it has: {param_names}"
+        yield f"params: {rule.id} has no parameter {name!r}; {advice}"
     if "capability" not in rule.reads:
         idle = [signal for signal in case.missing_signals if signal not in rule.requires]
         yield from (f"missing: {rule.id} does not require {signal!r}" for signal in idle if not _signal_problem(signal))
@@ -135,8 +135,8 @@ def _unknown_names(rule: Rule, case: Case) -> Iterator[str]:
 
 def _wrong_words(rule: Rule, case: Case) -> Iterator[str]:
     """Yield the unknown words in `expect` or `missing`, and in parameters that the rule compares with a column of words."""
-    expected = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
-    for row in expected:
+    expected_rows = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
+    for row in expected_rows:
         for name, value in row.items():
             try:
                 refuse_wrong_word("verdict", column_and_factor("verdict", name, "expect")[0], value, "expect")
@@ -193,8 +193,8 @@ def coverage_problem(cases: Sequence[Case]) -> str:
     for case in cases:
         if unknown := sorted(case.categories() - set(CATEGORIES)):
             return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(CATEGORIES)}"
-    shown = {name for case in cases for name in case.categories()}
-    if lacking := [name for name in CATEGORIES if name not in shown]:
+    shown_names = {name for case in cases for name in case.categories()}
+    if lacking := [name for name in CATEGORIES if name not in shown_names]:
         return f"1: no case shows: {', '.join(lacking)}"
     honest = {"clean": "pass", "violation": "fail", "not_applicable": "not_applicable", "unknown": "unknown"}
     for case in cases:
@@ -249,20 +249,20 @@ def judge_case(rule: Rule, case: Case) -> merged_cases.CaseOutcome:
 
 def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.NumberedCase]:
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
-    found = []
+    numbered = []
     for no, case in enumerate(cases):
         with _add_location_to_errors(rule, case):
             scene = complete_scene(rule, case.given_tables, case.missing_signals)
-            found.append(merged_cases.NumberedCase(no, scene, case.params))
-    return found
+            numbered.append(merged_cases.NumberedCase(no, scene, case.params))
+    return numbered
 
 
 def first_unexpected_merged_case(
     cases: Sequence[Case], numbered: Sequence[merged_cases.NumberedCase], outcome: merged_cases.CaseOutcome
 ) -> tuple[Case, str] | None:
     """Return the first merged case whose outcome differs from what the case expects, and the difference; None if all agree."""
-    found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in numbered)
-    return next(((case, message) for case, rows in found if (message := outcome_difference(case, rows))), None)
+    outcomes = ((cases[member.no], merged_cases.outcome_of_case(outcome, member.no)) for member in numbered)
+    return next(((case, message) for case, rows in outcomes if (message := outcome_difference(case, rows))), None)
 
 
 def first_problem_and_reason_codes_of_merged_cases(rule: Rule, cases: Sequence[Case]) -> tuple[str, set[str]]:
@@ -270,10 +270,10 @@ def first_problem_and_reason_codes_of_merged_cases(rule: Rule, cases: Sequence[C
 
     For each key column of `MERGE_KEYS`, the cases are merged and judged once, and this column distinguishes them. Errors: `RuleError`.
     """
-    everybody = numbered_cases(rule, cases)
+    numbered = numbered_cases(rule, cases)
     codes: set[str] = set()
     for key, where in merged_cases.MERGE_KEYS.items():
-        for group in merged_cases.mergeable_groups(everybody, key):
+        for group in merged_cases.mergeable_groups(numbered, key):
             outcome = merged_cases.judge([rule], merged_cases.merge_cases(group, key), group[0].params)[rule.id]
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
@@ -292,13 +292,13 @@ def _row_difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Ro
         return f"expected {expect}, got {got}" if wrong or not rows else ""
     if len(expect) != len(rows):
         return f"expected {len(expect)} rows, got {len(rows)}: {got}"
-    for n, (wanted, row) in enumerate(zip(expect, rows, strict=True)):
-        for name, value in wanted.items():
+    for n, (expected_row, row) in enumerate(zip(expect, rows, strict=True)):
+        for name, value in expected_row.items():
             column, scale = column_and_factor("verdict", name, "expect")
             same = value in row[column] if name == "reason" else is_same_value(value, row[column], scale)
             if not same:
-                shown = row[column] if scale == 1 or row[column] is None else row[column] / scale
-                return f"row {n}: expected {name} = {value!r}, got {shown!r}: {_row_text(row)}"
+                row_value = row[column] if scale == 1 or row[column] is None else row[column] / scale
+                return f"row {n}: expected {name} = {value!r}, got {row_value!r}: {_row_text(row)}"
     return ""
 
 
@@ -321,5 +321,5 @@ def is_same_value(expected_value: Any, actual_value: Any, scale: int) -> bool:
 
 
 def _row_text(row: Row) -> str:
-    who = " ".join(str(row[c]) for c in ("profile", "object_id") if row[c] is not None)
-    return f"{row['verdict']} ({row['reason_code']}{', ' + who if who else ''}: {row['reason']})"
+    names = " ".join(str(row[c]) for c in ("profile", "object_id") if row[c] is not None)
+    return f"{row['verdict']} ({row['reason_code']}{', ' + names if names else ''}: {row['reason']})"

@@ -58,9 +58,9 @@ def unknown_columns(file: Path) -> list[str]:
     con = _binding_database()
     con.execute(_REFERENCE_STEP)
     try:
-        for name in sorted(sections, key=lambda each: each != "reference"):
-            sql, found = _bind(con, sections[name], defaults, lost_columns)
-            problems += [f"{file}:{line}: {message}" for line, message in found]
+        for name in sorted(sections, key=lambda section: section != "reference"):
+            sql, section_problems = _bind(con, sections[name], defaults, lost_columns)
+            problems += [f"{file}:{line}: {message}" for line, message in section_problems]
             if name == "reference" and sql is not None:
                 _create_reference_table(con, sql)
     finally:
@@ -74,7 +74,7 @@ def is_valid_sql(rule: Rule) -> bool:
     con = _binding_database()
     con.execute(_REFERENCE_STEP)
     try:
-        for name in sorted(rule.sections, key=lambda each: each != "reference"):
+        for name in sorted(rule.sections, key=lambda section: section != "reference"):
             names = con.extract_statements(rule.sections[name])[0].named_parameters
             sql = with_values(rule.sections[name], {name: _literal(defaults.get(name)) for name in names})
             con.execute(_EXPLAIN + sql)
@@ -119,7 +119,7 @@ def _bind(
         statements = con.extract_statements(section.sql)
     except duckdb.Error:
         return None, problems  # reading the rule reports wrong syntax
-    if [each.type for each in statements] != [duckdb.StatementType.SELECT]:
+    if [statement.type for statement in statements] != [duckdb.StatementType.SELECT]:
         return None, problems  # EXPLAIN would execute the second of two statements; reading the rule reports them
     names = statements[0].named_parameters
     sql = with_values(section.sql.rstrip().rstrip(";"), {name: _literal(defaults.get(name)) for name in names})
@@ -128,19 +128,19 @@ def _bind(
         try:
             con.execute(_EXPLAIN + sql)
         except duckdb.Error as error:
-            found = _read_error(error)
+            problem = _read_error(error)
         else:
             return sql, problems
         content = sql.encode()
-        if (found.column and found.column not in lost_columns) or not (found.replacement or is_changed):
-            line = section.sql_line + (content[: found.offset].count(b"\n") if found.offset is not None else 0)
-            problems.append((line, found.message))
-        span = _NAME.match(content, found.offset) if found.offset is not None else None
-        if span is None or found.replacement is None:
+        if (problem.column and problem.column not in lost_columns) or not (problem.replacement or is_changed):
+            line = section.sql_line + (content[: problem.offset].count(b"\n") if problem.offset is not None else 0)
+            problems.append((line, problem.message))
+        span = _NAME.match(content, problem.offset) if problem.offset is not None else None
+        if span is None or problem.replacement is None:
             break
-        if found.column and found.replacement == "NULL":
-            lost_columns.add(found.column)
-        sql = (content[: span.start()] + found.replacement.encode() + content[span.end() :]).decode()
+        if problem.column and problem.replacement == "NULL":
+            lost_columns.add(problem.column)
+        sql = (content[: span.start()] + problem.replacement.encode() + content[span.end() :]).decode()
         is_changed = True
     return None, problems
 
@@ -148,17 +148,17 @@ def _bind(
 def _read_error(error: duckdb.Error) -> _BindingError:
     kind, _, text = str(error).partition(": ")
     try:
-        said: dict[str, Any] = json.loads(text)
+        details: dict[str, Any] = json.loads(text)
     except json.JSONDecodeError:
         return _BindingError(" ".join(str(error).split()), None)
-    message = str(said["exception_message"])
-    offset = int(said["position"]) - len(_EXPLAIN) if "position" in said else None
+    message = str(details["exception_message"])
+    offset = int(details["position"]) - len(_EXPLAIN) if "position" in details else None
     listed = re.findall(r'"([^"]+)"', message.partition("andidate bindings:")[2])
-    listed = listed or [name for name in str(said.get("candidates", "")).split(",") if name]
+    listed = listed or [name for name in str(details.get("candidates", "")).split(",") if name]
     column = _COLUMN_NOT_FOUND.match(message)
     if column is None:  # an unknown table or function is reported by reading the rule
-        other = listed[0] if kind == "Catalog Error" and listed else None
-        return _BindingError(" ".join(f"{kind}: {message}".split()), offset, None, other)
+        candidate = listed[0] if kind == "Catalog Error" and listed else None
+        return _BindingError(" ".join(f"{kind}: {message}".split()), offset, None, candidate)
     table, name = column[2], column[1] or column[3]
     where = f"in {table}" if table else "here"
     near = nearest_word(name, listed)

@@ -68,8 +68,8 @@ def write_new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
         sql.parent.mkdir(parents=True, exist_ok=True)
         for file, suffix in ((sql, ".sql"), (cases, ".cases.yml")):
             text = (folder("queries") / "skeletons" / f"{kind}{suffix}").read_text(encoding="utf-8")
-            with file.open("x", encoding="utf-8") as written:
-                written.write(text)
+            with file.open("x", encoding="utf-8") as output:
+                output.write(text)
     except OSError as error:
         raise UsageError(f"{sql.parent}: cannot write there: {error.strerror}") from error
     return sql, cases
@@ -162,21 +162,21 @@ def repeat_tests_on_changes(
     print_line("waiting for changes; press Ctrl-C to end")
     while not stop.wait(_CHANGED_FILES_CHECK_PERIOD_S):
         now = _change_times(root)
-        changed = {_rule_file_of(file) for file, _ in now.items() ^ before.items()}
+        changed_files = {_rule_file_of(file) for file, _ in now.items() ^ before.items()}
         before = now
-        for file in sorted(file for file in changed if file.is_file() and _is_selected(file, rule_globs)):
+        for file in sorted(file for file in changed_files if file.is_file() and _is_selected(file, rule_globs)):
             code = test(file, (), print_line)
     return code
 
 
 def _change_times(root: Path | None) -> dict[Path, int]:
     """Return the times of the last change of all files of rules and cases; a file that is being replaced is left out."""
-    found = {}
+    times = {}
     for file in _rule_files(root):
-        for each in (file, file.with_suffix(".cases.yml")):
+        for path in (file, file.with_suffix(".cases.yml")):
             with suppress(OSError):
-                found[each] = each.stat().st_mtime_ns
-    return found
+                times[path] = path.stat().st_mtime_ns
+    return times
 
 
 def mutation_test(root: Path | None, rule_globs: Sequence[str], print_line: Say) -> ExitCode:
@@ -184,23 +184,23 @@ def mutation_test(root: Path | None, rule_globs: Sequence[str], print_line: Say)
 
     Return USAGE if a rule was refused, else FAILED if a mutant of a stable rule survives without being listed, or a list is outdated.
     """
-    found = list(_read_selected_rules(root, rule_globs))
-    refused = [error for error in found if isinstance(error, RuleError)]
-    rules = [rule for rule in found if not isinstance(rule, RuleError)]
-    for error in refused:
+    rules_and_errors = list(_read_selected_rules(root, rule_globs))
+    errors = [error for error in rules_and_errors if isinstance(error, RuleError)]
+    rules = [rule for rule in rules_and_errors if not isinstance(rule, RuleError)]
+    for error in errors:
         print_line(f"REFUSED {error}")
     results = []
     for result in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
         print_line(mutation.result_text(result))
         results.append(result)
     is_part = bool(rule_globs) or (root is not None and root.is_file())
-    strange = [] if is_part or refused else mutation.unknown_rule_messages(rules)
+    strange = [] if is_part or errors else mutation.unknown_rule_messages(rules)
     for line in strange:
         print_line(f"FAIL {line}")
     print_line(mutation.summary_line(results))
     enough = is_part or mutation.noticed_share(results) >= mutation.LEAST_NOTICED_SHARE
     good = enough and not strange and all(result.ok for result in results)
-    return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
+    return ExitCode.USAGE if errors else ExitCode.OK if good else ExitCode.FAILED
 
 
 def _read_selected_rules(root: Path | None, rule_globs: Sequence[str]) -> Iterator[Rule | RuleError]:
@@ -208,11 +208,11 @@ def _read_selected_rules(root: Path | None, rule_globs: Sequence[str]) -> Iterat
 
     `root` may also be the file of one rule, or of its cases. Errors: `UsageError` if `rule_globs` selects no rule.
     """
-    found = _rule_files(root)
-    chosen = [file for file in found if _is_selected(file, rule_globs)]
-    if not chosen:
-        raise UsageError(f"--rules {', '.join(rule_globs)}: none of the {len(found)} rules here has such an id")
-    for file in chosen:
+    files = _rule_files(root)
+    selected_files = [file for file in files if _is_selected(file, rule_globs)]
+    if not selected_files:
+        raise UsageError(f"--rules {', '.join(rule_globs)}: none of the {len(files)} rules here has such an id")
+    for file in selected_files:
         try:
             rule = read_rule(file)
         except RuleError as error:
@@ -258,9 +258,9 @@ def _check_query_plans(rule: Rule) -> None:
         first = f"{rule.path}:{line or 1}: {error_message(error)}"
         raise RuleError("\n".join(in_order_of_lines(unknown_columns(rule.path) or [first], rule.path))) from error
     for plan in plans:
-        _, found, below = plan.partition("BLOCKWISE_NL_JOIN")
+        _, join, below = plan.partition("BLOCKWISE_NL_JOIN")
         tables = " and ".join(name for name in rule.reads if re.search(rf"\.{name}\b", below)) or "two tables"
-        if found:
+        if join:
             raise RuleError(
                 f"{rule.path}:1: a join of {tables} compares every row with every other (BLOCKWISE_NL_JOIN): join on keys, and move "
                 "what is no comparison into a WHERE or into branches of a UNION ALL; in a LEFT JOIN each inequality must have columns "

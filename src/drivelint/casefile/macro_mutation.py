@@ -63,19 +63,21 @@ def judge_macro_mutants(
     Return a result for each macro, and the macros that no table or rule calls: their mutants cannot be judged. Errors: `RuleError` for a
     table or rule that fails its own cases.
     """
-    remaining, judged, valid = list(mutants), set[str](), set[MacroMutant]()
-    for called, cases in _users(tables, rules):
-        judged |= called
-        mine = [mutant for mutant in remaining if mutant.macro in called]
-        if not mine:
+    remaining, judged_macros, valid = list(mutants), set[str](), set[MacroMutant]()
+    for macros, cases in _users(tables, rules):
+        judged_macros |= macros
+        own_mutants = [mutant for mutant in remaining if mutant.macro in macros]
+        if not own_mutants:
             continue
         with cases as difference:
             if message := difference():
                 raise RuleError(f"{message} (without any mutant: see rules test)")
-            if message := _difference_with({mutant.macro: _printed_value(mutant.macro) for mutant in mine}, difference):
+            if message := _difference_with(
+                {mutant.macro: _printed_value(mutant.macro) for mutant in own_mutants}, difference
+            ):
                 raise RuleError(f"{message} (printed by DuckDB, a macro has another meaning: no mutant can be judged)")
-            differences = {mutant: _difference_with({mutant.macro: mutant.value}, difference) for mutant in mine}
-        valid |= {mutant for mutant in mine if differences[mutant] is not None}
+            differences = {mutant: _difference_with({mutant.macro: mutant.value}, difference) for mutant in own_mutants}
+        valid |= {mutant for mutant in own_mutants if differences[mutant] is not None}
         remaining = [mutant for mutant in remaining if not differences.get(mutant)]
     entries = read_survivors(folder("queries") / "macros" / SURVIVORS_FILE)
     names = dict.fromkeys([*(mutant.macro for mutant in mutants), *(entry.rule for entry in entries)])
@@ -88,9 +90,9 @@ def judge_macro_mutants(
             tuple(entry.mutant for entry in entries if entry.rule == name),
         )
         for name in names
-        if name in judged or name not in macro_texts()
+        if name in judged_macros or name not in macro_texts()
     ]
-    return results, sorted({mutant.macro for mutant in mutants} - judged)
+    return results, sorted({mutant.macro for mutant in mutants} - judged_macros)
 
 
 def _users(
@@ -105,7 +107,7 @@ def _users(
 
 def _called_macros(queries: Collection[str]) -> frozenset[str]:
     """Return the macros that SELECTs call, and the macros that these call."""
-    called: set[str] = set()
+    macros: set[str] = set()
     todo = list(queries)
     while todo:
         calls = {
@@ -113,10 +115,10 @@ def _called_macros(queries: Collection[str]) -> frozenset[str]:
             for node, _ in walk(syntax_tree(todo.pop()))
             if node.get("class") == "FUNCTION"
         }
-        new = (calls & macro_texts().keys()) - called
-        called |= new
+        new = (calls & macro_texts().keys()) - macros
+        macros |= new
         todo += [f"SELECT {macro_texts()[name][1]}" for name in new if macro(name) is not None]
-    return frozenset(called)
+    return frozenset(macros)
 
 
 @contextmanager

@@ -95,16 +95,16 @@ def _is_map_table(table: str) -> bool:
 
 def merge_cases(cases: Sequence[NumberedCase], key: str) -> Scene:
     """Return the tables of all cases as one scene, in which the case's number precedes each key."""
-    merged: Scene = {}
+    scene: Scene = {}
     for member in cases:
         for table, rows in member.scene.items():
             if not rows:
-                merged.setdefault(table, [])
+                scene.setdefault(table, [])
             elif _may_hold_several_cases(table, member.scene, key):
-                merged.setdefault(table, []).extend(_row_with_case_number(row, table, key, member.no) for row in rows)
+                scene.setdefault(table, []).extend(_row_with_case_number(row, table, key, member.no) for row in rows)
             else:
-                merged[table] = rows  # the same rows in every case
-    return merged
+                scene[table] = rows  # the same rows in every case
+    return scene
 
 
 def _row_with_case_number(row: Row, table: str, key: str, case_number: int) -> Row:
@@ -121,10 +121,10 @@ def _row_with_case_number(row: Row, table: str, key: str, case_number: int) -> R
 def outcome_of_case(outcome: CaseOutcome, case_number: int) -> CaseOutcome:
     """Return the rows of case `case_number` from an outcome of merged cases, with the original keys."""
     mark = f"{case_number}:"
-    found = CaseOutcome([], [])
-    for rows, mine in zip(outcome, found, strict=True):
+    case_outcome = CaseOutcome([], [])
+    for rows, case_rows in zip(outcome, case_outcome, strict=True):
         for row in rows:
             marked = {name: row[name] for name in _NUMBERED_COLUMNS if isinstance(row.get(name), str)}
             if any(text.startswith(mark) for text in marked.values()):
-                mine.append(row | {name: text.removeprefix(mark) for name, text in marked.items()})
-    return found
+                case_rows.append(row | {name: text.removeprefix(mark) for name, text in marked.items()})
+    return case_outcome

@@ -57,18 +57,18 @@ class Mutant(NamedTuple):
 
 def mutants(rule: Rule) -> list[Mutant]:
     """Return all mutants of a rule, each with a unique name of its fault (a second fault with the same text gets `#2`)."""
-    seen: Counter[str] = Counter()
-    found: list[Mutant] = []
+    counts: Counter[str] = Counter()
+    rule_mutants: list[Mutant] = []
     for fault, wrong in (
         *_mutants_of_sense(rule),
         *_mutants_of_params(rule),
         *_mutants_of_windows(rule),
         *_mutants_of_sql(rule),
     ):
-        seen[fault] += 1
-        name = fault if seen[fault] == 1 else f"{fault} #{seen[fault]}"
-        found.append(Mutant(name, msgspec.structs.replace(wrong, id=f"{rule.id}~{len(found)}")))
-    return found
+        counts[fault] += 1
+        name = fault if counts[fault] == 1 else f"{fault} #{counts[fault]}"
+        rule_mutants.append(Mutant(name, msgspec.structs.replace(wrong, id=f"{rule.id}~{len(rule_mutants)}")))
+    return rule_mutants
 
 
 def _mutants_of_sense(rule: Rule) -> Iterator[Mutant]:
@@ -86,16 +86,16 @@ def _mutants_of_params(rule: Rule) -> Iterator[Mutant]:
         if isinstance(param.default, bool | str) or param.default == 0:
             continue
         for factor in _WINDOW_FACTORS if name in windows else _THRESHOLD_FACTORS:
-            changed = msgspec.structs.replace(param, default=param.default * factor)
-            wrong = msgspec.structs.replace(rule, params={**rule.params, name: changed})
+            wrong_param = msgspec.structs.replace(param, default=param.default * factor)
+            wrong = msgspec.structs.replace(rule, params={**rule.params, name: wrong_param})
             yield Mutant(f"params.{name} * {factor:g}", wrong)
 
 
 def _mutants_of_windows(rule: Rule) -> Iterator[Mutant]:
-    said = rule.path.read_text(encoding="utf-8")
+    text = rule.path.read_text(encoding="utf-8")
     for field in _WINDOW_FIELDS:
         seconds = getattr(rule, field)
-        if isinstance(seconds, str) or not seconds or f"\n-- {field} =" not in said:
+        if isinstance(seconds, str) or not seconds or f"\n-- {field} =" not in text:
             continue
         for factor in _WINDOW_FACTORS:
             yield Mutant(f"{field} * {factor:g}", msgspec.structs.replace(rule, **{field: seconds * factor}))
@@ -105,8 +105,8 @@ def _mutants_of_sql(rule: Rule) -> Iterator[Mutant]:
     for section, sql in rule.sections.items():
         tree = syntax_tree(sql)
         for place in _deciding_nodes(tree["statements"][0]["node"]):
-            for fault, changed in _faulty_trees(tree, *place):
-                sql_of_mutant = _tree_sql(_with_inner_for_cross_joins(changed))
+            for fault, wrong_tree in _faulty_trees(tree, *place):
+                sql_of_mutant = _tree_sql(_with_inner_for_cross_joins(wrong_tree))
                 yield Mutant(f"@{section} {fault}", _with_section(rule, section, sql_of_mutant))
 
 
@@ -118,14 +118,14 @@ def printed_rule(rule: Rule) -> Rule:
 
 def mutants_of_select(select: str) -> list[tuple[str, str]]:
     """Return the mutants of a table's SELECT as (fault, SELECT): comparisons reversed, and thresholds times 0.9 and 1.1."""
-    seen: Counter[str] = Counter()
-    found: list[tuple[str, str]] = []
+    counts: Counter[str] = Counter()
+    wrong_selects: list[tuple[str, str]] = []
     tree = _with_inner_for_cross_joins(syntax_tree(select))
     for node_path, node in _deciding_nodes(tree["statements"][0]["node"]):
-        for fault, changed in _trees_with_other_values(tree, node_path, node):
-            seen[fault] += 1
-            found.append((fault if seen[fault] == 1 else f"{fault} #{seen[fault]}", _tree_sql(changed)))
-    return found
+        for fault, wrong_tree in _trees_with_other_values(tree, node_path, node):
+            counts[fault] += 1
+            wrong_selects.append((fault if counts[fault] == 1 else f"{fault} #{counts[fault]}", _tree_sql(wrong_tree)))
+    return wrong_selects
 
 
 def printed_select(select: str) -> str:
@@ -151,18 +151,18 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
 def _deciding_nodes(root: Node) -> list[tuple[NodePath, Node]]:
     """Return every node that can change a verdict, in the order of the text, each with its path in the tree."""
     wording = _column_paths(root, frozenset({"reason", "reason_code"}))
-    found: list[tuple[NodePath, Node]] = []
+    nodes: list[tuple[NodePath, Node]] = []
     todo: list[tuple[NodePath, Any]] = [((), root)]
     while todo:
         node_path, part = todo.pop()
         if node_path in wording:
             continue
         if isinstance(part, dict):
-            found.append((node_path, part))
+            nodes.append((node_path, part))
             todo += [((*node_path, key), part[key]) for key in reversed(part)]
         elif isinstance(part, list):
             todo += [((*node_path, i), part[i]) for i in range(len(part) - 1, -1, -1)]
-    return found
+    return nodes
 
 
 def _output_select_paths(root: Node) -> list[NodePath]:
@@ -183,8 +183,8 @@ def _column_paths(root: Node, names: frozenset[str]) -> set[NodePath]:
     if not outputs:
         return set()
     first = _node_at(root, outputs[0])["select_list"]
-    chosen = [i for i, item in enumerate(first) if column_name(item) in names]
-    return {(*node_path, "select_list", i) for node_path in outputs for i in chosen}
+    indices = [i for i, item in enumerate(first) if column_name(item) in names]
+    return {(*node_path, "select_list", i) for node_path in outputs for i in indices}
 
 
 def _node_at(root: Any, node_path: NodePath) -> Any:
@@ -245,9 +245,9 @@ def _is_threshold_number(value: Node) -> bool:
 
 
 def _replace_node(tree: Node, node_path: NodePath, new: Node) -> Node:
-    changed: Node = copy.deepcopy(tree)
-    _node_at(changed["statements"][0]["node"], node_path[:-1])[node_path[-1]] = copy.deepcopy(new)
-    return changed
+    new_tree: Node = copy.deepcopy(tree)
+    _node_at(new_tree["statements"][0]["node"], node_path[:-1])[node_path[-1]] = copy.deepcopy(new)
+    return new_tree
 
 
 def _scale_node(node: Node, factor: float) -> Node:

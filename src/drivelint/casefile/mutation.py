@@ -160,17 +160,17 @@ def judge_mutants(rule: Rule) -> MutationResult:
 def _survivors_and_number_of_invalid_mutants(rule: Rule, candidates: list[Mutant]) -> tuple[tuple[str, ...], int]:
     """Return the faults of the mutants that no case notices, and the number of mutants that are no valid SQL, which prove nothing."""
     cases = read_cases(rule)
-    everybody = numbered_cases(rule, cases)
-    printed = printed_rule(rule)
+    numbered = numbered_cases(rule, cases)
+    printed_variant = printed_rule(rule)
     n_invalid = 0
     for key, where in MERGE_KEYS.items():
-        for group in mergeable_groups(everybody, key):
-            variants = [rule, printed, *(mutant.rule for mutant in candidates)]
+        for group in mergeable_groups(numbered, key):
+            variants = [rule, printed_variant, *(mutant.rule for mutant in candidates)]
             outcomes = judge(variants, merge_cases(group, key), group[0].params)
             if wrong := first_unexpected_merged_case(cases, group, outcomes[rule.id]):
                 place = case_location(rule, wrong[0])
                 raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
-            if first_unexpected_merged_case(cases, group, outcomes[printed.id]):
+            if first_unexpected_merged_case(cases, group, outcomes[printed_variant.id]):
                 raise RuleError(f"{rule.path}: printed by DuckDB, the SQL has another meaning: no mutant can be judged")
             survivors = []
             for mutant in candidates:
@@ -185,11 +185,11 @@ def _survivors_and_number_of_invalid_mutants(rule: Rule, candidates: list[Mutant
 
 def unknown_rule_messages(rules: Sequence[Rule]) -> list[str]:
     """Return a line per entry of the packs' `survivors.toml` with an unknown rule. Errors: `RuleError` for an invalid file."""
-    known = {rule.id for rule in rules}
+    known_ids = {rule.id for rule in rules}
     return [
         f"{pack / SURVIVORS_FILE}: there is no rule {name!r} here"
         for pack in dict.fromkeys(rule.path.parent for rule in rules)
-        for name in sorted({entry.rule for entry in read_survivors(pack / SURVIVORS_FILE)} - known)
+        for name in sorted({entry.rule for entry in read_survivors(pack / SURVIVORS_FILE)} - known_ids)
     ]
 
 

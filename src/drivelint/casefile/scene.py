@@ -95,8 +95,8 @@ def complete_table_scene(reads: Collection[str], given_tables: Mapping[str, Any]
             scene[table] = rows_of_blocks(table, blocks, f"given: {table}")
     raise_problems(problems)
     if computed := {"step", "clock", "_ego_clock"} & set(reads):
-        said = {table: scene.pop(table, [{}]) for table in ("clock", "_ego_clock")}
-        clocks = said["clock"] if said["clock"] != [{}] else said["_ego_clock"]
+        clock_rows = {table: scene.pop(table, [{}]) for table in ("clock", "_ego_clock")}
+        clocks = clock_rows["clock"] if clock_rows["clock"] != [{}] else clock_rows["_ego_clock"]
         steps = _step_rows(scene, clocks[0].get("max_gap_ns"))
         scene |= {"step": steps, "clock": _clock_rows(steps, clocks), "_ego_clock": _clock_rows(steps, clocks)}
         for table in {"step", "clock", "_ego_clock"} - computed:
@@ -146,8 +146,8 @@ def _block_rows(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
         elif not isinstance(value, list):
             columns[column] = [value] * n
     defaults = {"drive_id": _DRIVE, "ego_id": _EGO}
-    known = {c: v for c, v in defaults.items() if c in _column_defaults()[table] and c not in columns}
-    return [known | {column: values[i] for column, values in columns.items()} for i in range(n)]
+    row_defaults = {c: v for c, v in defaults.items() if c in _column_defaults()[table] and c not in columns}
+    return [row_defaults | {column: values[i] for column, values in columns.items()} for i in range(n)]
 
 
 def column_and_factor(table: str, name: str, where: str) -> tuple[str, int]:
@@ -158,8 +158,8 @@ def column_and_factor(table: str, name: str, where: str) -> tuple[str, int]:
     if name.endswith("_s") and f"{name[:-2]}_ns" in columns:
         return f"{name[:-2]}_ns", 1_000_000_000
     near = hint(name, columns)
-    known = near if near.startswith("did") else f"it has: {', '.join(columns)}"
-    raise RuleError(f"{where} has no column {name!r}; {known}")
+    advice = near if near.startswith("did") else f"it has: {', '.join(columns)}"
+    raise RuleError(f"{where} has no column {name!r}; {advice}")
 
 
 def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
@@ -167,11 +167,11 @@ def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
 
     `value` may also be a list, or a mapping of times to words.
     """
-    known = declarations.word_columns()[table].get(column)
-    if known is None:
+    word_column = declarations.word_columns()[table].get(column)
+    if word_column is None:
         return
-    for word in _texts_in_value(value, known.field):
-        if wrong := known.vocabulary.problem(word):
+    for word in _texts_in_value(value, word_column.field):
+        if wrong := word_column.vocabulary.problem(word):
             raise RuleError(f"{where}.{column}: {wrong}")
 
 
@@ -183,8 +183,8 @@ def _texts_in_value(value: Any, field: str) -> Iterator[str]:
         inner = [(part, field) for part in value] if isinstance(value, list) else []
     if isinstance(value, str) and not field:
         yield value
-    for part, wanted in inner:
-        yield from _texts_in_value(part, wanted)
+    for part, inner_field in inner:
+        yield from _texts_in_value(part, inner_field)
 
 
 def _evenly_spaced_values(first: Decimal, last: Decimal, scale: int, n: int) -> list[float | int]:
@@ -218,7 +218,7 @@ def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[An
     if not isinstance(times, list):
         raise RuleError(f"{where}: a value by time needs the times: t_s as a list or range")
     rows = _spread(value.get("else"), len(times), f"{where}: else")
-    for key, chosen in value.items():
+    for key, entry in value.items():
         if key == "else":
             continue
         match = _RANGE.fullmatch(str(key)) or re.fullmatch(rf"({_NUMBER})()()", str(key))
@@ -227,7 +227,7 @@ def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[An
         first = round(Decimal(match[1]) * 10**9)
         last = round(Decimal(match[2] or match[1]) * 10**9)
         hit = [i for i, t in enumerate(times) if first <= t <= last]
-        for i, new in zip(hit, _spread(chosen, len(hit), f"{where}: {key}"), strict=True):
+        for i, new in zip(hit, _spread(entry, len(hit), f"{where}: {key}"), strict=True):
             rows[i] = new
     return rows
 
@@ -255,7 +255,7 @@ def _step_rows(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> li
         )
         used = {row[name] for name in names if row.get(name) is not None}
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
-    said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in scene.get("step", ())}
+    given_steps = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in scene.get("step", ())}
     steps: list[Row] = []
     for (drive, ego), moments in times.items():
         ordered = sorted(moments)
@@ -265,16 +265,16 @@ def _step_rows(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> li
             dt = t - ordered[k - 1] if k else None
             seg += dt is not None and dt > gap
             step = {"drive_id": drive, "ego_id": ego, "t_ns": t, "k": k, "dt_ns": dt, "seg": seg}
-            steps.append(step | said.get((drive, ego, t), {}))
+            steps.append(step | given_steps.get((drive, ego, t), {}))
     return steps
 
 
 def _condition_rows(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
     """Return the conditions of every step; the default of `engaged` is true, other conditions are unknown by default."""
     keys = ("drive_id", "ego_id", "t_ns")
-    said = {tuple(row.get(key) for key in keys): row for row in condition_rows}
-    at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *said])
-    return [{**dict(zip(keys, key, strict=True)), "engaged": True, **said.get(key, {})} for key in at]
+    given_rows = {tuple(row.get(key) for key in keys): row for row in condition_rows}
+    at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *given_rows])
+    return [{**dict(zip(keys, key, strict=True)), "engaged": True, **given_rows.get(key, {})} for key in at]
 
 
 def _has_row_per_step(table: str) -> bool:
@@ -292,14 +292,14 @@ def _clock_rows(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
     times: dict[tuple[str, str], list[int]] = {}
     for row in steps:
         times.setdefault((row["drive_id"], row["ego_id"]), []).append(row["t_ns"])
-    said = {(row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)): row for row in clock_rows if row}
+    given_clocks = {(row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)): row for row in clock_rows if row}
     clocks = []
-    for drive, ego in dict.fromkeys([*times, *said]):
+    for drive, ego in dict.fromkeys([*times, *given_clocks]):
         used = sorted(times.get((drive, ego), [0]))
         period = _median_period_ns(used)
-        own = {c: v for c, v in said.get((drive, ego), {}).items() if v is not None}
+        own_values = {c: v for c, v in given_clocks.get((drive, ego), {}).items() if v is not None}
         clock = {"drive_id": drive, "ego_id": ego, "period_ns": period, "max_gap_ns": period * 5 // 2}
-        clocks.append(clock | {"t_start_ns": used[0], "t_end_ns": used[-1]} | own)
+        clocks.append(clock | {"t_start_ns": used[0], "t_end_ns": used[-1]} | own_values)
     return clocks
 
 

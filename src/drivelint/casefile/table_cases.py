@@ -81,9 +81,9 @@ def cases_file(table: LibraryTable) -> Path:
 def tables_read_by(table: LibraryTable) -> frozenset[str]:
     """Return all tables that the SELECT of a table reads. Errors: `RuleError` for one that there is not."""
     tree = syntax.parse_select(table.select, str(table.path))
-    known = declarations.column_comments().keys()
-    if unknown := sorted(syntax.tables_read(tree) - known):
-        near = nearest_word(unknown[0], known)
+    table_names = declarations.column_comments().keys()
+    if unknown := sorted(syntax.tables_read(tree) - table_names):
+        near = nearest_word(unknown[0], table_names)
         instead = f"did you mean {near!r}?" if near else "drivelint docs dictionary prints all"
         raise RuleError(f"{table.path}: there is no table {unknown[0]!r}: {instead}")
     return syntax.tables_read(tree)
@@ -126,15 +126,15 @@ def run_table_cases(table: LibraryTable) -> list[CaseResult]:
     cases = read_table_cases(table)
     with_rows = FilledCases(table, cases)
     try:
-        found = with_rows.rows_by_case(table.select)
+        rows_by_case = with_rows.rows_by_case(table.select)
     except duckdb.Error as error:
         raise RuleError(f"{table.path}: {error_message(error)}") from error
     finally:
         with_rows.clear()
     return [
-        CaseResult(each.case.name, not message, message and f"{each.place}: {message}")
-        for each in cases
-        for message in [rows_difference(table.name, each.expected_rows, found.get(each.numbered.no, []))]
+        CaseResult(case.case.name, not message, message and f"{case.place}: {message}")
+        for case in cases
+        for message in [rows_difference(table.name, case.expected_rows, rows_by_case.get(case.numbered.no, []))]
     ]
 
 
@@ -148,7 +148,7 @@ class FilledCases:
         self._numbered_columns = [
             c for c in ("drive_id", "environment_id") if c in declarations.column_comments()[table.name]
         ]
-        scene = merge_cases([each.numbered for each in cases], "drive_id")
+        scene = merge_cases([case.numbered for case in cases], "drive_id")
         self._filled = list(scene)
         try:
             for name, rows in scene.items():
@@ -163,15 +163,15 @@ class FilledCases:
     def rows_by_case(self, select: str) -> dict[int, list[Row]]:
         """Return the rows of a SELECT for the table, by the number of the case. Errors: `duckdb.Error`."""
         # into the table, so that the values have the declared types
-        found: dict[int, list[Row]] = {}
+        by_case: dict[int, list[Row]] = {}
         rows = self._con.execute(f"SELECT {self._columns} FROM (\n{select}\n)").to_arrow_table().to_pylist()
         for row in rows:
             number = 0
             for column in self._numbered_columns:
                 if row[column] is not None and (marked := _CASE_NUMBER.match(row[column])):
                     number, row[column] = int(marked[1]), row[column][marked.end() :]
-            found.setdefault(number, []).append(row)
-        return found
+            by_case.setdefault(number, []).append(row)
+        return by_case
 
     def clear(self) -> None:
         """Delete the rows of all cases."""
@@ -197,8 +197,8 @@ def rows_difference(table: str, expected_rows: Sequence[Row], rows: Sequence[Row
         tied = list(group)
         candidates, remaining = remaining[: len(tied)], remaining[len(tied) :]
         # rows with the same ids are in no order: each is compared with the row that it agrees with, the most detailed one first
-        for wanted in sorted(tied, key=len, reverse=True):
-            messages = [_row_difference(wanted, row, kinds) for row in candidates]
+        for expected_row in sorted(tied, key=len, reverse=True):
+            messages = [_row_difference(expected_row, row, kinds) for row in candidates]
             if "" not in messages:
                 return messages[0]
             del candidates[messages.index("")]
@@ -209,7 +209,7 @@ def _row_difference(expected_row: Row, row: Row, kinds: Mapping[str, str]) -> st
     for column, value in expected_row.items():
         is_same = _is_same_shape if "GEOMETRY" in kinds[column] else _is_same
         if not is_same(value, row[column]):
-            wanted_text, got = (_cell_text(column, each) for each in (value, row[column]))
+            wanted_text, got = (_cell_text(column, cell) for cell in (value, row[column]))
             return f"expected {wanted_text}, got {got.partition(': ')[2]}: {_row_text(row)}"
     return ""
 

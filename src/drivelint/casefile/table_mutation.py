@@ -70,8 +70,8 @@ def first_difference(
         return None
     except duckdb.Error:
         return "fails on these rows"
-    found = (rows_difference(table.name, each.expected_rows, rows.get(each.numbered.no, [])) for each in cases)
-    return next((message for message in found if message), "")
+    messages = (rows_difference(table.name, case.expected_rows, rows.get(case.numbered.no, [])) for case in cases)
+    return next((message for message in messages if message), "")
 
 
 @contextmanager

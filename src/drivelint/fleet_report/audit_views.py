@@ -56,14 +56,14 @@ class Audit:
     @property
     def settings(self) -> dict[str, Any]:
         """The settings that determined the verdicts: the fields of `JudgeSettings` without `memory`."""
-        found: dict[str, Any] = self.audit_json["settings"]
-        return found
+        settings: dict[str, Any] = self.audit_json["settings"]
+        return settings
 
     @property
     def version(self) -> str | None:
         """The version of drivelint that made the audit; None: not known."""
-        found: str | None = self.audit_json.get("versions", {}).get("drivelint")
-        return found
+        version: str | None = self.audit_json.get("versions", {}).get("drivelint")
+        return version
 
     @property
     def warning(self) -> str:
@@ -144,9 +144,9 @@ def _open_audit(
 ) -> Audit:
     views_folder.mkdir()
     results = open_store(dest)
-    told = read_audit_file(results, dest)
-    if told is None:
+    audit_json = read_audit_file(results, dest)
+    if audit_json is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
     if not is_in_evidence_pack:
         require_audit_unchanged(results, views_folder, dest)
-    return Audit(dest, results, told, create_views_of_all_results(con, results, views_folder, views_prefix))
+    return Audit(dest, results, audit_json, create_views_of_all_results(con, results, views_folder, views_prefix))

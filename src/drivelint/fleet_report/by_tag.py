@@ -66,22 +66,24 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     by_rule: dict[tuple[str, str | None], list[Rate]] = {}
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
-    found = [RuleRatesByTag(*name, sorted(told, key=lambda r: r.tag_value is None)) for name, told in by_rule.items()]
+    rule_rates = [
+        RuleRatesByTag(*name, sorted(group, key=lambda r: r.tag_value is None)) for name, group in by_rule.items()
+    ]
     severity = dict(con.execute("SELECT rule_id, severity FROM rules").fetchall())
-    found = sorted(
-        (each for each in found if _n_findings(each)),
-        key=lambda each: (
-            SEVERITIES.index(severity[each.rule_id]),
-            -_n_findings(each),
-            each.rule_id,
-            each.profile or "",
+    rule_rates = sorted(
+        (rule for rule in rule_rates if _n_findings(rule)),
+        key=lambda rule: (
+            SEVERITIES.index(severity[rule.rule_id]),
+            -_n_findings(rule),
+            rule.rule_id,
+            rule.profile or "",
         ),
     )
-    left = found[MAX_SHOWN_RULES:]
+    left = rule_rates[MAX_SHOWN_RULES:]
     return RatesByTag(
         tag,
-        found[:MAX_SHOWN_RULES],
-        logarithmic_axis(rate.per_100km for each in found[:MAX_SHOWN_RULES] for rate in each.rates),
+        rule_rates[:MAX_SHOWN_RULES],
+        logarithmic_axis(rate.per_100km for rule in rule_rates[:MAX_SHOWN_RULES] for rate in rule.rates),
         max(0, n_values - MAX_TAG_VALUES),
         len(left),
         sum(map(_n_findings, left)),

@@ -101,8 +101,8 @@ class FleetContent:
             if self.audit.settings.get("robustness")
             else "not examined: use audit --robustness"
         )
-        said = "; ".join([*touched, f"certainty of the findings: {looked}"])
-        return said[0].upper() + said[1:]
+        sentence = "; ".join([*touched, f"certainty of the findings: {looked}"])
+        return sentence[0].upper() + sentence[1:]
 
     @property
     def is_all_decided(self) -> bool:
@@ -114,14 +114,14 @@ class FleetContent:
     def headline(self) -> tuple[str, str]:
         """The outcome (fail, unknown or pass), and the sentence at the top of the page."""
         if self.n_findings:
-            said = ", ".join(
+            counts_text = ", ".join(
                 f"{self.severities[name]['findings']:,} {name}" for name in SEVERITIES if name in self.severities
             )
             noun = "finding" if self.n_findings == 1 else "findings"
             of = (
                 f"{self.totals['judged']:,} judged drives" if self.n_not_judged else f"{self.totals['drives']:,} drives"
             )
-            return "fail", f"{said} {noun} in {self.n_drives_with_findings:,} of {of}"
+            return "fail", f"{counts_text} {noun} in {self.n_drives_with_findings:,} of {of}"
         if not self.verdicts["pass"]:
             return "unknown", "Nothing could be decided"
         if self.audit.warning or self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged:
@@ -153,7 +153,7 @@ def fleet_content(
         row["explain"] = shlex.join(["drivelint", "explain", row["finding_id"], "--in", f"drives/{row['drive_id']}"])
         row["tags"] = dict(row["tags"] or ())
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
-    found = sorted(rates(con), key=lambda rate: _sort_key_by_severity(rate, rules))
+    all_rates = sorted(rates(con), key=lambda rate: _sort_key_by_severity(rate, rules))
     (with_findings,) = query_rows(con, "with_findings", subject=counted_egos_sql())
     return FleetContent(
         audit=audit,
@@ -161,8 +161,8 @@ def fleet_content(
         severities={row["severity"]: row for row in query_rows(con, "severities", event=event)},
         verdicts=verdict_counts(con, COUNTED_PREFIX),
         rules=rules,
-        rates=found,
-        axis=logarithmic_axis(rate.per_100km for rate in found if rate.findings),
+        rates=all_rates,
+        axis=logarithmic_axis(rate.per_100km for rate in all_rates if rate.findings),
         worst=worst,
         n_drives_with_findings=with_findings["drives"],
         n_without_rate=with_findings["without_rate"],
@@ -170,7 +170,7 @@ def fleet_content(
         not_judged=query_rows(con, "not_judged", {"most": MAX_DRIVES_PER_TABLE}),
         lossy=logs_with_flag(con, "lossy"),
         off_map=logs_with_flag(con, "off_map"),
-        worst_value=worst_tag_value(con, found),
+        worst_value=worst_tag_value(con, all_rates),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(tags)],
         coverage=coverage(con),
         undecided=missing_signals(con),

@@ -143,40 +143,42 @@ class AuditDifference:
             return f"{NOTHING_IN_COMMON}; compare rates"
         n_added = self.of_lone_drives["new"]
         if self.has_few_common_drives:
-            told = self.comparison
+            comparison = self.comparison
             counts = {standing: self.n_listed_findings(standing) for standing in self.event_counts}
-            verb, n_gone = "is" if told.drives_both == 1 else "are", self.of_lone_drives["lost"]
+            verb, n_gone = "is" if comparison.drives_both == 1 else "are", self.of_lone_drives["lost"]
             return (
-                f"only {plural(told.drives_both, 'drive')} {verb} in both audits: there {counts['new']} new, "
+                f"only {plural(comparison.drives_both, 'drive')} {verb} in both audits: there {counts['new']} new, "
                 f"{counts_sentence(counts, self.worse, self.fixed)}; "
-                f"{plural(n_added, 'finding')} in {plural(told.drives_new_only, 'drive')} of the newer audit alone, "
-                f"{plural(n_gone, 'finding')} in {plural(told.drives_base_only, 'drive')} of the base alone; compare rates"
+                f"{plural(n_added, 'finding')} in {plural(comparison.drives_new_only, 'drive')} of the newer audit alone, "
+                f"{plural(n_gone, 'finding')} in {plural(comparison.drives_base_only, 'drive')} of the base alone; compare rates"
             )
-        added = f" ({n_added} in drives that the base does not contain)" if n_added else ""
-        return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
+        added_text = f" ({n_added} in drives that the base does not contain)" if n_added else ""
+        return (
+            f"{self.event_counts['new']} new{added_text}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
+        )
 
     @property
     def drives_sentence(self) -> str:
         """How many drives are in both audits, and how many in only one of them."""
-        told = self.comparison
+        comparison = self.comparison
         only = [
-            f"{n} only in the {which}"
-            for n, which in ((told.drives_new_only, "newer audit"), (told.drives_base_only, "base"))
+            f"{n} only in the {side}"
+            for n, side in ((comparison.drives_new_only, "newer audit"), (comparison.drives_base_only, "base"))
             if n
         ]
-        return ", ".join([f"{plural(told.drives_both, 'drive')} in both audits", *only])
+        return ", ".join([f"{plural(comparison.drives_both, 'drive')} in both audits", *only])
 
     @property
     def has_few_common_drives(self) -> bool:
         """Whether so few drives are in both audits that the findings of other drives are not listed as new or gone: rates are compared."""
-        told = self.comparison
-        smaller = told.drives_both + min(told.drives_base_only, told.drives_new_only)
-        return 0 < told.drives_both < _LEAST_COMMON_SHARE * smaller
+        comparison = self.comparison
+        smaller = comparison.drives_both + min(comparison.drives_base_only, comparison.drives_new_only)
+        return 0 < comparison.drives_both < _LEAST_COMMON_SHARE * smaller
 
     def listed_entries(self, standing: str) -> list[FindingEntry]:
         """Return the entries of a standing that are listed: with few common drives, only theirs."""
         entries = self.entries[standing]
-        return [each for each in entries if "drive" not in each.causes] if self.has_few_common_drives else entries
+        return [entry for entry in entries if "drive" not in entry.causes] if self.has_few_common_drives else entries
 
     def n_listed_findings(self, standing: str) -> int:
         """Return the number of findings of a standing: with few common drives, only of these drives."""
@@ -192,7 +194,7 @@ class AuditDifference:
     @property
     def listed_causes(self) -> dict[tuple[str, ...], Counter[str]]:
         """`causes`; with few common drives, only of these drives."""
-        return {k: told for k, told in self.causes.items() if not (self.has_few_common_drives and "drive" in k)}
+        return {k: counts for k, counts in self.causes.items() if not (self.has_few_common_drives and "drive" in k)}
 
     def extra_rows_sentence(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
@@ -203,8 +205,8 @@ class AuditDifference:
     @property
     def is_disjoint(self) -> bool:
         """Whether no drive is in both audits, so that findings cannot be compared."""
-        told = self.comparison
-        return not told.drives_both and bool(told.drives_base_only and told.drives_new_only)
+        comparison = self.comparison
+        return not comparison.drives_both and bool(comparison.drives_base_only and comparison.drives_new_only)
 
     def n_failing(self, fail_on: str) -> int:
         """Return the number of new findings of stable rules at or above a severity."""
@@ -233,18 +235,18 @@ class AuditDifference:
     @property
     def has_rates(self) -> bool:
         """Whether any rule has a rate in both audits, so that rates can be compared."""
-        return any(each.p_value is not None or each.occasion_p_value is not None for each in self.rates)
+        return any(change.p_value is not None or change.occasion_p_value is not None for change in self.rates)
 
     @property
     def significant_changes(self) -> list[RateChange]:
         """The changes of rates that are statistically significant."""
-        return [each for each in self.rates if each.is_significant]
+        return [change for change in self.rates if change.is_significant]
 
     @property
     def tests_by_p_value(self) -> list[tuple[RateChange, RateTest]]:
         """The tests that could report a difference, sorted by p-value."""
-        found = [(change, test) for change in self.rates for test in change.tests]
-        return sorted(found, key=lambda each: (each[1].p_value, each[0].rule_id, each[0].profile or "", each[1].per))
+        tests = [(change, test) for change in self.rates for test in change.tests]
+        return sorted(tests, key=lambda pair: (pair[1].p_value, pair[0].rule_id, pair[0].profile or "", pair[1].per))
 
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
@@ -263,17 +265,17 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
     """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE_PREFIX), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
-    counted = {f"{side}_counted": counted_finding_of_each_finding_sql(of) for side, of in sides.items()}
-    (gating,) = query_rows(con, "gating", None, **sides, **counted)
+    counted_sql = {f"{side}_counted": counted_finding_of_each_finding_sql(of) for side, of in sides.items()}
+    (gating,) = query_rows(con, "gating", None, **sides, **counted_sql)
     only = [query_rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
-    for each in comparison.differences:
-        if each.standing != "unchanged":
-            causes.setdefault(each.causes, Counter())[each.standing] += each.n
-            not_known.update(dict.fromkeys(each.causes_not_known, each.n))
+    for group in comparison.differences:
+        if group.standing != "unchanged":
+            causes.setdefault(group.causes, Counter())[group.standing] += group.n
+            not_known.update(dict.fromkeys(group.causes_not_known, group.n))
     standing_counts = comparison.counts_by_standing()
-    told = AuditDifference(
+    audit_difference = AuditDifference(
         base=base,
         new=new,
         counts={standing: standing_counts[standing] for standing in DIFF_STATUSES},
@@ -298,14 +300,19 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
         rates=compare_rates(con, base=BASE_PREFIX, new=""),
         gating_rules=dict(con.execute("SELECT rule_id, severity FROM rules WHERE status = 'stable'").fetchall()),
     )
-    few = told.has_few_common_drives
-    return replace(told, entries={each: _entries(con, sides, each, max_entries, few) for each in DIFF_STATUS_TITLES})
+    common_first = audit_difference.has_few_common_drives
+    return replace(
+        audit_difference,
+        entries={
+            standing: _entries(con, sides, standing, max_entries, common_first) for standing in DIFF_STATUS_TITLES
+        },
+    )
 
 
 def verdict_counts(con: duckdb.DuckDBPyConnection, view_prefix: str) -> dict[str, int]:
     """Return verdict -> number of rows, including zeros."""
-    found = {row["verdict"]: row["n"] for row in query_rows(con, "verdicts", of=view_prefix)}
-    return {verdict: found.get(verdict, 0) for verdict in VERDICTS}
+    counts = {row["verdict"]: row["n"] for row in query_rows(con, "verdicts", of=view_prefix)}
+    return {verdict: counts.get(verdict, 0) for verdict in VERDICTS}
 
 
 def write_finding_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
@@ -325,8 +332,8 @@ def _entries(
     max_entries: int,
     common_first: bool,
 ) -> list[FindingEntry]:
-    asked = {"standing": standing, "most": max_entries, "common_first": common_first}
-    entry_rows = query_rows(con, "entries", asked, **prefix_by_side)
+    parameters = {"standing": standing, "most": max_entries, "common_first": common_first}
+    entry_rows = query_rows(con, "entries", parameters, **prefix_by_side)
     return [
         FindingEntry(
             _compared_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"]

@@ -83,12 +83,12 @@ def _exit_code_and_reason(difference: AuditDifference, fail_on: str | None) -> s
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
     n, n_added = difference.n_gone_unfixed(fail_on), difference.n_failing_in_added_drives(fail_on)
-    said = exit_sentence(
+    sentence = exit_sentence(
         difference.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
     )
-    added = f", {n_added} of them in drives that the base does not contain" if n_added else ""
+    added_text = f", {n_added} of them in drives that the base does not contain" if n_added else ""
     rates = f"; {_rates_sentence(difference)}" if difference.has_few_common_drives else ""
-    return f"{said}{added}{rates}"
+    return f"{sentence}{added_text}{rates}"
 
 
 def _rates_sentence(difference: AuditDifference) -> str:
@@ -110,7 +110,7 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 def changes_sentence(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
-    significant = [each for each in difference.tests_by_p_value if each[1].is_significant]
+    significant = [pair for pair in difference.tests_by_p_value if pair[1].is_significant]
     rate_texts = [f"{rate_name(change)} per {test.per} {ratio_text(test)}" for change, test in significant]
     if len(rate_texts) > _MAX_LISTED_RATES:  # then the nearest test of each rule
         nearest = {
@@ -148,8 +148,8 @@ def ratio_text(test: RateTest) -> str:
 def both_rate_texts(test: RateTest) -> list[str]:
     """Return both rates of a test as text, the earlier first."""
     if test.per == "occasion":
-        told = zip(test.events, test.of, test.rates, strict=True)
-        return [f"{n} of {of:.0f}, {percent_with_interval(rate)}" for n, of, rate in told]
+        rows = zip(test.events, test.of, test.rates, strict=True)
+        return [f"{n} of {of:.0f}, {percent_with_interval(rate)}" for n, of, rate in rows]
     return [rate_with_interval(rate) for rate in test.rates]
 
 
@@ -198,24 +198,24 @@ def to_json(difference: AuditDifference, fail_on: str | None) -> str:
             "base_only": difference.comparison.drives_base_only,
             "new_only": difference.comparison.drives_new_only,
         },
-        "differences": [each._asdict() for each in difference.comparison.differences],
+        "differences": [group._asdict() for group in difference.comparison.differences],
         "entries": [
             {
-                **msgspec.to_builtins(each.finding),
-                **{key: value for key, value in each._asdict().items() if key != "finding"},
+                **msgspec.to_builtins(entry.finding),
+                **{key: value for key, value in entry._asdict().items() if key != "finding"},
             }
             for entries in difference.entries.values()
-            for each in entries
+            for entry in entries
         ],
         "left_out": {
             standing: difference.counts[standing] - len(entries) for standing, entries in difference.entries.items()
         },
-        "no_more_judged": [each._asdict() for each in difference.no_more_judged],
-        "opened": [each._asdict() for each in difference.new_unknowns],
+        "no_more_judged": [drive._asdict() for drive in difference.no_more_judged],
+        "opened": [unknowns._asdict() for unknowns in difference.new_unknowns],
         "rates": [
-            _rate_change_json(each)
-            for each in difference.rates
-            if each.p_value is not None or each.occasion_p_value is not None
+            _rate_change_json(change)
+            for change in difference.rates
+            if change.p_value is not None or change.occasion_p_value is not None
         ],
     }
     return msgspec.json.format(msgspec.json.encode(replace_non_finite(msgspec.to_builtins(content))), indent=2).decode()

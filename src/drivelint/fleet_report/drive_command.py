@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _OPTION_OF_FIELD: Final = {"sensor_range_m": "--sensor-range"}
-_DEFAULT_BY_FIELD: Final = {each.name: each.default for each in fields(DriveInput)}
+_DEFAULT_BY_FIELD: Final = {field.name: field.default for field in fields(DriveInput)}
 _OPTION_OF_SETTING: Final = {
     "rules": "--rules",
     "ignore": "--ignore",
@@ -44,9 +44,9 @@ def _option_words(name: str, value: Any) -> list[list[str]]:
         return []
     option = _OPTION_OF_FIELD.get(name, f"--{name.replace('_', '-')}")
     if name == "env":
-        return [[option, each] for each in value]
+        return [[option, setting] for setting in value]
     if isinstance(value, list):  # with '=', because a negative number looks like an option
-        return [[f"{option}={','.join(f'{each:.12g}' for each in value)}"]]
+        return [[f"{option}={','.join(f'{number:.12g}' for number in value)}"]]
     return [[option, _name_of_local_copy(str(value)) if name in {"map", "map_dir", "mapping"} else str(value)]]
 
 

@@ -92,9 +92,9 @@ def choose_drives_and_return_page_names(con: duckdb.DuckDBPyConnection, max_driv
 
 def page_urls(con: duckdb.DuckDBPyConnection, drive_keys: Iterable[str | None]) -> dict[str, str]:
     """Return key -> relative URL of the page, for those of the given drives that have a page."""
-    asked = sorted({key for key in drive_keys if key is not None})
-    found = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": asked})
-    return {key: page_name(key) for (key,) in found.fetchall()}
+    keys = sorted({key for key in drive_keys if key is not None})
+    page_drives = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": keys})
+    return {key: page_name(key) for (key,) in page_drives.fetchall()}
 
 
 def pages(
@@ -126,9 +126,9 @@ def pages(
         "max_notes": MAX_REASONS_AND_NOTES,
     }
     for first in range(1, n_pages + 1, _DRIVES_AT_A_TIME):
-        for told in _template_values(con, audit, first, first + _DRIVES_AT_A_TIME - 1):
-            key = told["drive"]["key"]
-            values = same | told | {"moments": moments.get(key)}
+        for drive_values in _template_values(con, audit, first, first + _DRIVES_AT_A_TIME - 1):
+            key = drive_values["drive"]["key"]
+            values = same | drive_values | {"moments": moments.get(key)}
             yield page_name(key), template.render(values).encode("utf-8", "replace")
 
 
@@ -168,7 +168,7 @@ def _page_content(
         "undecided": undecided,
         "lacking": group_rows(drive["not_judged"], lambda lack: (lack["signal"], lack["reason"])),
         "command": check_command(drive["log"], drive["options"], audit.settings, drive["drive_id"]),
-        "explain": [shlex.join(["drivelint", "explain", each, "--in", home]) for each in worst],
+        "explain": [shlex.join(["drivelint", "explain", finding_id, "--in", home]) for finding_id in worst],
         "is_stored": is_url(drive["log"]),
     }
 
@@ -178,8 +178,8 @@ def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, i
     if drive["status"] != "judged":
         return "unknown", "Could not be judged"
     if n := sum(by_severity.values()):
-        said = ", ".join(f"{found:,} {name}" for name, found in by_severity.items() if found)
-        return "fail", f"{said} {'finding' if n == 1 else 'findings'}"
+        counts_text = ", ".join(f"{count:,} {name}" for name, count in by_severity.items() if count)
+        return "fail", f"{counts_text} {'finding' if n == 1 else 'findings'}"
     if not counts["pass"]:
         return "unknown", "Nothing could be decided"
     if counts["unknown"] or counts["error"]:

@@ -82,8 +82,13 @@ class LogarithmicAxis(NamedTuple):
 
 def logarithmic_axis(estimates: Iterable[Estimate]) -> LogarithmicAxis:
     """Return an axis that includes these rates and the finite bounds of their intervals."""
-    known = [each for each in estimates if each.rate is not None]
-    ends = [end for each in known for end in (each.low, each.rate, each.high) if end and math.isfinite(end)]
+    known_estimates = [estimate for estimate in estimates if estimate.rate is not None]
+    ends = [
+        end
+        for estimate in known_estimates
+        for end in (estimate.low, estimate.rate, estimate.high)
+        if end and math.isfinite(end)
+    ]
     if not ends:
         return LogarithmicAxis(-1, 1)
     low, high = math.floor(math.log10(min(ends))), math.ceil(math.log10(max(ends)))

@@ -99,13 +99,15 @@ def write_report(dest: str, report_format: str) -> tuple[str, Audit]:
 
 
 def _result_of_audit(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
-    counted = create_counted_views(con)
+    view_prefix = create_counted_views(con)
     orders = {"verdicts": ORDER_OF_VERDICTS, "findings": ORDER_OF_FINDINGS}
     rows = {
-        table: con.execute(statement("fleet_report/as_checked", of=counted, table=table, order=order)).to_arrow_table()
+        table: con.execute(
+            statement("fleet_report/as_checked", of=view_prefix, table=table, order=order)
+        ).to_arrow_table()
         for table, order in orders.items()
     }
-    drives = con.execute(statement("fleet_report/drives_as_checked", of=counted)).to_arrow_table()
+    drives = con.execute(statement("fleet_report/drives_as_checked", of=view_prefix)).to_arrow_table()
     logs = dict(zip(drives["drive_id"].to_pylist(), drives["log"].to_pylist(), strict=True))
     here = {drive: log for drive, log in logs.items() if not is_url(log)}
     return Result(

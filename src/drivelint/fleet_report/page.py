@@ -85,13 +85,13 @@ def _write_html(
     drives = moment_pages.worst_drives(con, most_moments)
     with page_files.list_pages_and_remove_earlier_ones(
         results, [*names, *(moment_pages.moments_page_name(drive["key"]) for drive in drives)]
-    ) as written:
+    ) as page_names:
         links: dict[str, drive_pages.MomentsLink] = {}
         for moments in moment_pages.pages_with_moments(drives, fleet.audit, progress):
             if moments.content:
                 results.write(moments.name, moments.content)
             else:
-                written.discard(moments.name)
+                page_names.discard(moments.name)
             links[moments.key] = drive_pages.MomentsLink(moments.name if moments.content else None, moments.reason)
         for name, page in drive_pages.pages(con, fleet.audit, fleet.rules, links):
             results.write(name, page)

@@ -29,12 +29,12 @@ def list_pages_and_remove_earlier_ones(results: ResultStore, names: Collection[s
     earlier = _pages_of_earlier_report(results)
     if earlier or names:
         _write_page_list(results, {*earlier, *names})
-    written = set(names)
-    yield written
-    if gone := earlier - written:
-        results.delete(sorted(gone))
-    if written:
-        _write_page_list(results, written)
+    page_names = set(names)
+    yield page_names
+    if outdated_names := earlier - page_names:
+        results.delete(sorted(outdated_names))
+    if page_names:
+        _write_page_list(results, page_names)
     elif earlier or names:
         results.delete([LIST_FILE])
 
@@ -42,10 +42,10 @@ def list_pages_and_remove_earlier_ones(results: ResultStore, names: Collection[s
 def _pages_of_earlier_report(results: ResultStore) -> set[str]:
     """Return the pages of an earlier report. Other names in the list are ignored, because no foreign file may be removed."""
     try:
-        told = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
+        content = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
     except msgspec.MsgspecError:
         return set()
-    return {name for name in told.get(_JSON_KEY, ()) if is_page_name(name)}
+    return {name for name in content.get(_JSON_KEY, ()) if is_page_name(name)}
 
 
 def _write_page_list(results: ResultStore, names: Collection[str]) -> None:

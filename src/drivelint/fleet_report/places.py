@@ -53,19 +53,19 @@ def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
     px = min((_MAP_WIDTH_PX - 2 * _MAP_CELL_PX) / across, (_MAX_MAP_HEIGHT_PX - 2 * _MAP_CELL_PX) / down)  # per degree
     cell = _MAP_CELL_PX / px
     bound = {"west": about["west"], "north": about["north"], "stretch": stretch, "cell": cell, "most": MAX_MARKS_ON_MAP}
-    found = con.execute(statement("fleet_report/marks"), bound).to_arrow_table().to_pylist()
+    marks = con.execute(statement("fleet_report/marks"), bound).to_arrow_table().to_pylist()
     bar_m = round_step(_M_PER_DEGREE * across / 8)
     return FindingMap(
         width=_MAP_WIDTH_PX,
         height=math.ceil(down * px) + 4 * _MAP_CELL_PX,
-        marks=[_map_mark(row) for row in found],
+        marks=[_map_mark(row) for row in marks],
         bar_px=svg_number(bar_m / _M_PER_DEGREE * px),
         bar_words=f"{bar_m / 1000:g} km" if bar_m >= 1000 else f"{bar_m:g} m",
         middle=f"{(about['south'] + about['north']) / 2:.4f}, {(about['west'] + about['east']) / 2:.4f}",
         places=con.execute(statement("fleet_report/places"), {"most": MAX_LISTED_PLACES}).to_arrow_table().to_pylist(),
         n_placed=about["placed"],
         n_findings=about["findings"],
-        n_left_out=about["placed"] - sum(row["n"] for row in found),
+        n_left_out=about["placed"] - sum(row["n"] for row in marks),
     )
 
 

@@ -18,12 +18,12 @@ def query_rows(
     con: duckdb.DuckDBPyConnection, statement_name: str, parameters: Row | None = None, **fragments: str
 ) -> list[Row]:
     """Return the rows of a statement of `queries/fleet_report`."""
-    found: list[Row] = (
+    rows: list[Row] = (
         con.execute(statement(f"fleet_report/{statement_name}", **fragments), parameters or {})
         .to_arrow_table()
         .to_pylist()
     )
-    return found
+    return rows
 
 
 def ranked_drives_sql() -> str:

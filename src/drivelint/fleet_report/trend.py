@@ -61,21 +61,21 @@ class AuditTrend:
     @property
     def significant_trends(self) -> list[Trend]:
         """The rules whose rate rises or falls by more than chance explains."""
-        return [each for each in self.trends if each.is_significant]
+        return [trend for trend in self.trends if trend.is_significant]
 
     @property
     def headline(self) -> str:
         """What the tests found, in one sentence."""
         if not self.n_tests:
             return "no rule has a finding and a rate in two of the audits: there is nothing to compare"
-        parts = [f"{rate_name(each)} {direction(each)}" for each in self.significant_trends]
+        parts = [f"{rate_name(trend)} {direction(trend)}" for trend in self.significant_trends]
         changes = ", ".join(parts) if parts else "no rate rises or falls"
         return f"{changes} by more than chance explains ({plural(self.n_tests, 'test')}, Holm's correction)"
 
     @property
     def exit_code(self) -> ExitCode:
         """NOT_JUDGED if an audit has not ended, or if there is no rate to compare; else OK. A trend is a fact and no failure."""
-        return ExitCode.NOT_JUDGED if not self.n_tests or any(each.warning for each in self.audits) else ExitCode.OK
+        return ExitCode.NOT_JUDGED if not self.n_tests or any(audit.warning for audit in self.audits) else ExitCode.OK
 
 
 def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend:
@@ -87,24 +87,24 @@ def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend
         raise UsageError("a trend needs at least two audits, in the order of time")
     totals: list[AuditTotals] = []
     rates_by_audit: list[list[Rate]] = []
-    known: list[str] = []
+    known_hashes: list[str] = []
     for dest in dests:
-        with open_audit_leaving_out_logs(dest, known) as (con, audit, n_left_out):
+        with open_audit_leaving_out_logs(dest, known_hashes) as (con, audit, n_left_out):
             if audit.warning:
                 warn(audit.warning)
             totals.append(_audit_totals(con, audit.name, n_left_out, audit.warning))
             rates_by_audit.append(rates(con))
             hashes = con.execute("SELECT DISTINCT sha256 FROM drives WHERE sha256 IS NOT NULL ORDER BY ALL").fetchall()
-            known += [sha256 for (sha256,) in hashes]
-    found = trends(rates_by_audit)
+            known_hashes += [sha256 for (sha256,) in hashes]
+    all_trends = trends(rates_by_audit)
     with_findings = [
-        each for each in found if any(rate and rate.findings + rate.findings_of_unknown for rate in each.rates)
+        trend for trend in all_trends if any(rate and rate.findings + rate.findings_of_unknown for rate in trend.rates)
     ]
     return AuditTrend(
         totals,
         sorted(with_findings, key=_sort_key_by_p_value),
-        len(found) - len(with_findings),
-        sum(each.corrected is not None for each in found),
+        len(all_trends) - len(with_findings),
+        sum(trend.corrected is not None for trend in all_trends),
     )
 
 
@@ -176,7 +176,10 @@ def _text_tables(trend: AuditTrend) -> dict[str, list[str]]:
         for of in trend.audits
     ]
     names = ["rule", *(one_line(of.name) for of in trend.audits), "trend"]
-    lines = [[rate_name(each), *map(rate_text, each.rates), trend_text(each)] for each in trend.trends]
+    lines = [
+        [rate_name(rule_trend), *map(rate_text, rule_trend.rates), trend_text(rule_trend)]
+        for rule_trend in trend.trends
+    ]
     return {"audits": _aligned_lines([head, *counts]), "rules": _aligned_lines([names, *lines])}
 
 
@@ -197,15 +200,15 @@ def to_json(trend: AuditTrend) -> str:
     content = {
         "trend_schema": TREND_SCHEMA_VERSION,
         "exit": {"code": int(trend.exit_code), "why": trend.headline},
-        "audits": [each._asdict() for each in trend.audits],
+        "audits": [audit._asdict() for audit in trend.audits],
         "rules": [
             {
-                "rule_id": each.rule_id,
-                "profile": each.profile,
-                "p_value": each.p_value,
-                "corrected": each.corrected,
-                "called": each.is_significant,
-                "direction": direction(each) if each.is_significant else None,
+                "rule_id": rule_trend.rule_id,
+                "profile": rule_trend.profile,
+                "p_value": rule_trend.p_value,
+                "corrected": rule_trend.corrected,
+                "called": rule_trend.is_significant,
+                "direction": direction(rule_trend) if rule_trend.is_significant else None,
                 "rates": [
                     rate
                     and {
@@ -215,10 +218,10 @@ def to_json(trend: AuditTrend) -> str:
                         "km_unknown": rate.km_unknown,
                         "per_100km": rate.per_100km._asdict(),
                     }
-                    for rate in each.rates
+                    for rate in rule_trend.rates
                 ],
             }
-            for each in trend.trends
+            for rule_trend in trend.trends
         ],
         "rules_without_findings": trend.n_rules_without_findings,
     }

@@ -64,7 +64,7 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
     """
     with open_audits(dest) as (con, audit, _):
         check_tag_exists(con, tag, "")
-        rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
+        rules = catalogue.load_rules([Path(folder) for folder in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
         ((param, value),) = values.items()
         version, old_value = _rule_version_and_param_value(con, rule_id, param)
@@ -75,9 +75,9 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
         by_tag = _what_if_or_refusal(con, rule, param, value, tag)
         if by_tag.needs_check:
             return AuditWhatIf(audit, setting, old_value, tag, by_tag)
-        found = by_tag if tag is None else _what_if_or_refusal(con, rule, param, value, None)
+        answer = by_tag if tag is None else _what_if_or_refusal(con, rule, param, value, None)
         return AuditWhatIf(
-            audit, setting, old_value, tag, found, flipped_verdicts(con, MAX_FLIPPED_VERDICTS), by_tag.verdicts
+            audit, setting, old_value, tag, answer, flipped_verdicts(con, MAX_FLIPPED_VERDICTS), by_tag.verdicts
         )
 
 
@@ -91,13 +91,13 @@ def _what_if_or_refusal(
 
 def _rule_version_and_param_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
     """Return the version of a rule in the audit, and the value of its parameter there."""
-    known = dict(
+    rules = dict(
         con.execute("SELECT rule_id, {'version': rule_version, 'params': params} FROM rules ORDER BY ALL").fetchall()
     )
-    if rule_id not in known:
-        raise UsageError(f"the audit has no verdicts of rule {rule_id}; {hint(rule_id, known)}")
-    values = {each["name"]: each["value"] for each in known[rule_id]["params"]}
-    return known[rule_id]["version"], values.get(param, "not set")
+    if rule_id not in rules:
+        raise UsageError(f"the audit has no verdicts of rule {rule_id}; {hint(rule_id, rules)}")
+    values = {entry["name"]: entry["value"] for entry in rules[rule_id]["params"]}
+    return rules[rule_id]["version"], values.get(param, "not set")
 
 
 def to_text(analysis: AuditWhatIf) -> str:
@@ -110,7 +110,7 @@ def to_text(analysis: AuditWhatIf) -> str:
         lines.append(analysis.audit.warning)
     if answer.needs_check:
         return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _advice_on_new_audit(analysis)])
-    total, flips = sum(each.n for each in answer.verdicts), sum(each.n for each in answer.flips)
+    total, flips = sum(count.n for count in answer.verdicts), sum(count.n for count in answer.flips)
     words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _counts_by_change(answer.flips))
     lines.append(f"{flips} of {total} verdicts change{f': {words}' if words else ''}")
     if answer.not_known:
@@ -127,24 +127,24 @@ def to_text(analysis: AuditWhatIf) -> str:
 
 
 def _counts_by_change(flips: Iterable[FlipCount]) -> list[tuple[tuple[str, str | None], int]]:
-    pairs = sorted((each.was, each.becomes or "", each.n) for each in flips)
+    pairs = sorted((flip.was, flip.becomes or "", flip.n) for flip in flips)
     return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
 
 
 def _lines_by_tag_value(analysis: AuditWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with the changes of its verdicts."""
     flips_by_group: dict[tuple[str, str], list[FlipCount]] = {}
-    for each in sorted(
+    for flip in sorted(
         analysis.by_tag_value,
         key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
     ):
-        value = "" if analysis.tag is None else "(not given)" if each.tag_value is None else each.tag_value
-        flips_by_group.setdefault((value, each.profile or ""), []).append(each)
+        value = "" if analysis.tag is None else "(not given)" if flip.tag_value is None else flip.tag_value
+        flips_by_group.setdefault((value, flip.profile or ""), []).append(flip)
     width = max((len(" ".join(key).strip()) for key in flips_by_group), default=0)
     lines = []
     for key, flips in list(flips_by_group.items())[:MAX_TEXT_LINES]:
-        said = [f"{each.n} {_change_text(each)}" for each in flips]
-        lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(said)}"))
+        change_texts = [f"{flip.n} {_change_text(flip)}" for flip in flips]
+        lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(change_texts)}"))
     if len(flips_by_group) > MAX_TEXT_LINES:
         lines.append(f"  ... and {len(flips_by_group) - MAX_TEXT_LINES} more: --format json contains all")
     return lines
@@ -153,12 +153,12 @@ def _lines_by_tag_value(analysis: AuditWhatIf) -> list[str]:
 def _flipped_verdict_lines(verdicts: Sequence[FlippedVerdict], n: int) -> list[str]:
     """Return one line with the log for each changed verdict. `n`: the number of all changed verdicts."""
     lines = ["verdicts that change:"] if verdicts else []
-    for each in verdicts[:MAX_TEXT_LINES]:
-        whom = f" for object {each.object_id}" if each.object_id else ""
-        profile = f" [{each.profile}]" if each.profile else ""
+    for flip in verdicts[:MAX_TEXT_LINES]:
+        object_words = f" for object {flip.object_id}" if flip.object_id else ""
+        profile = f" [{flip.profile}]" if flip.profile else ""
         lines.append(
             one_line(
-                f"  {each.log}: {ego_name(each.ego_id)}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
+                f"  {flip.log}: {ego_name(flip.ego_id)}{object_words}{profile}: {flip.was} -> {flip.becomes or 'needs a new audit'}"
             )
         )
     if n > MAX_TEXT_LINES:
@@ -192,7 +192,7 @@ def to_json(analysis: AuditWhatIf) -> str:
         "needs_audit": answer.needs_check,
         "not_known": answer.not_known,
         "warning": analysis.audit.warning,
-        "verdicts": [each._asdict() for each in analysis.by_tag_value],
-        "flipped": [each._asdict() for each in analysis.flipped],
+        "verdicts": [flip._asdict() for flip in analysis.by_tag_value],
+        "flipped": [verdict._asdict() for verdict in analysis.flipped],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

@@ -97,7 +97,9 @@ def worst_tag_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -
                 compared.append(_compare_highest_rate(tag, tag_rates))
     if not compared:
         return None
-    first = min(compared, key=lambda each: (each.p_value, each.tag, each.rates[0].rule_id, each.rates[0].profile or ""))
+    first = min(
+        compared, key=lambda entry: (entry.p_value, entry.tag, entry.rates[0].rule_id, entry.rates[0].profile or "")
+    )
     rest = first.rates[1:]
     return WorstTagValue(
         first.tag,

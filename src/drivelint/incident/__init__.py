@@ -76,17 +76,17 @@ def other_drives_with_named_finding(request: IncidentRequest) -> list[str]:
     If no drive has such a finding, return the other drives with near misses.
     """
     result = load_result(request.folder)
-    named = named_finding(result, request.name, with_near_misses=True)
-    row = named.row
+    finding = named_finding(result, request.name, with_near_misses=True)
+    row = finding.row
     if "@" in request.name or row["finding_id"].startswith(request.name):
         return []
-    every = near_misses(result) if named.is_near_miss else result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    every = near_misses(result) if finding.is_near_miss else result.findings.select(["rule_id", "drive_id"]).to_pylist()
     same = (
         contact_findings(result)
         if request.name == CONTACT_TAG
-        else [each for each in every if each["rule_id"] == row["rule_id"]]
+        else [candidate for candidate in every if candidate["rule_id"] == row["rule_id"]]
     )
-    return sorted({each["drive_id"] for each in same} - {row["drive_id"]})
+    return sorted({candidate["drive_id"] for candidate in same} - {row["drive_id"]})
 
 
 def possible_sheet_ids(result: Result) -> set[str]:
@@ -110,7 +110,7 @@ def judge_parties_again(request: IncidentRequest, run_options: RunRequest | None
     finding = named_finding(result, request.name, with_near_misses=True)
     run_options = (run_options or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
     judge = Judge.of_run(run_options, result.rules, request.memory)
-    ego, other = finding.row["ego_id"], finding.row["object_id"]
+    ego, other_id = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_judged_drive_and_source_text(
         request.folder,
         run_options,
@@ -120,7 +120,7 @@ def judge_parties_again(request: IncidentRequest, run_options: RunRequest | None
         map_=request.map,
         map_sha256=finding.drive["map_sha256"],
     )
-    ego_rows = judge.judge(drive, ego, other)
+    ego_rows = judge.judge(drive, ego, other_id)
     if finding.is_near_miss:
         finding = near_miss_with_closing_speed(finding, ego_rows.steps)
     return Case(
@@ -138,17 +138,17 @@ def _other_party_rows_or_reason(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> EgoRows | str | None:
     """Return the result for the other party as ego, or a sentence why it was not judged; None if there is no other party."""
-    other, drive_id = finding.row["object_id"], finding.row["drive_id"]
-    if other is None:
+    other_id, drive_id = finding.row["object_id"], finding.row["drive_id"]
+    if other_id is None:
         return None
-    if any(ego["ego_id"] == other for ego in finding.drive["exposure"]):
+    if any(ego["ego_id"] == other_id for ego in finding.drive["exposure"]):
         rows = [
-            [row for row in table.to_pylist() if row["drive_id"] == drive_id and row["ego_id"] == other]
+            [row for row in table.to_pylist() if row["drive_id"] == drive_id and row["ego_id"] == other_id]
             for table in (result.verdicts, result.findings)
         ]
         return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
     # the option --ego-size is about the ego of the run: with this option, read the log with that ego
-    read_as = other if run_options.ego_size is None else finding.row["ego_id"]
+    read_as = other_id if run_options.ego_size is None else finding.row["ego_id"]
     drive, _ = open_judged_drive_and_source_text(
         request.folder,
         run_options,
@@ -157,20 +157,20 @@ def _other_party_rows_or_reason(
         trace=_present_log_path(request, run_options, finding),
         map_=request.map,
     )
-    drive = with_ego(drive, other)
+    drive = with_ego(drive, other_id)
     kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
-    if kinds.get(other) in _NON_VEHICLE_CLASSES:
-        return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."
+    if kinds.get(other_id) in _NON_VEHICLE_CLASSES:
+        return f"The rules are for drivers: {other_id} is a {kinds[other_id]}, and was not judged."
     examined = any(row["n_copies"] is not None for row in result.findings.to_pylist())
-    return judge.judge(drive, other, finding.row["ego_id"], MeasurementErrors() if examined else None)
+    return judge.judge(drive, other_id, finding.row["ego_id"], MeasurementErrors() if examined else None)
 
 
 def _present_log_path(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
     """Return the log's path, from which the log is read even if a database was kept; None if there is no log at that path."""
     if request.trace is not None:
         return request.trace
-    known = run_options.traces.get(finding.row["drive_id"])
-    return Path(known) if known is not None and Path(known).exists() else None
+    path = run_options.traces.get(finding.row["drive_id"])
+    return Path(path) if path is not None and Path(path).exists() else None
 
 
 @cache
@@ -191,13 +191,13 @@ def _template_environment() -> Environment:
     digest, of_pictures = (
         base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in (style, pictures)
     )
-    others = "base-uri 'none'; form-action 'none'"
+    shared_directives = "base-uri 'none'; form-action 'none'"
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
         picture_style=Markup(pictures),  # noqa: S704 - ours
-        policy=f"default-src 'none'; style-src 'sha256-{digest}'; {others}",
+        policy=f"default-src 'none'; style-src 'sha256-{digest}'; {shared_directives}",
         picture_policy=(
-            f"default-src 'none'; style-src 'sha256-{digest}' 'sha256-{of_pictures}'; img-src data:; {others}"
+            f"default-src 'none'; style-src 'sha256-{digest}' 'sha256-{of_pictures}'; img-src data:; {shared_directives}"
         ),
         version=__version__,
         duckdb_version=duckdb.__version__,

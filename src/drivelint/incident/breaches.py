@@ -46,15 +46,15 @@ def broken_rule_line(rule: Row, rows: Sequence[Row], drive_start_ns: int) -> str
     """Return the line of a broken rule: its worst finding (of each profile, if several), with number and certainty of the findings."""
     ordered = sorted(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     row = ordered[0]
-    per_profile = list({each["profile"]: each for each in reversed(ordered)}.values())
-    what = (
+    per_profile = list({finding["profile"]: finding for finding in reversed(ordered)}.values())
+    breach = (
         _values_by_profile_text(rule, per_profile)
         or measured_and_required_text(row, rule)
         or shorten(row["reason"], 120, placeholder=" ...")
     )
-    whom = profile_text(row["profile"]) if len(per_profile) == 1 else ""
+    profile = profile_text(row["profile"]) if len(per_profile) == 1 else ""
     about = f"{clause_number(rule['clause'])}, {rule['severity']}"
-    return f"{quoted_title(rule)}{whom} ({about}): {_finding_time_text(row, rule, drive_start_ns)}, {what}{_certainties_text(rows)}"
+    return f"{quoted_title(rule)}{profile} ({about}): {_finding_time_text(row, rule, drive_start_ns)}, {breach}{_certainties_text(rows)}"
 
 
 def kept_rule_line(rule: Row, rows: Sequence[Row], span_ns: tuple[int, int], drive_start_ns: int) -> str:
@@ -63,16 +63,18 @@ def kept_rule_line(rule: Row, rows: Sequence[Row], span_ns: tuple[int, int], dri
     The title replaces the value if the rule measures nothing, or may excuse a breach, because the value does not show the excuse.
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
-    said, about = quoted_title(rule), [_judged_times_text(rows, span_ns, drive_start_ns)]
+    statement, about = quoted_title(rule), [_judged_times_text(rows, span_ns, drive_start_ns)]
     if EXCUSABLE_RULE_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
-        whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
+        object_words = f" with {row['object_id']}:" if row["object_id"] is not None else ""
         least = "at least " if row["cause_code"] == LOWER_BOUND_CAUSE_CODE else ""
-        said = text_with_minus_signs(f"{rule['observes']}{whom} {least}{amount_text(row['observed'], row['unit'])}")
+        statement = text_with_minus_signs(
+            f"{rule['observes']}{object_words} {least}{amount_text(row['observed'], row['unit'])}"
+        )
         about.insert(0, f"{SENSE_WORDS.get(rule['sense'], '')}{required_value_text(row, rule)}")
-    if any(each["near_miss"] for each in rows):
+    if any(verdict["near_miss"] for verdict in rows):
         about.append("near miss")
-    told = "; ".join(each for each in about if each)
-    return f"{said} ({told})" if told else said
+    details = "; ".join(detail for detail in about if detail)
+    return f"{statement} ({details})" if details else statement
 
 
 def reason_without_advice(reason: str) -> str:
@@ -90,11 +92,11 @@ def _values_by_profile_text(rule: Row, rows: Sequence[Row]) -> str:
     if len(rows) < 2 or any(row["observed"] is None or row["required"] is None for row in rows):
         return ""
     ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
-    found = {amount_text(row["observed"], row["unit"]) for row in rows}
-    if len(found) > 1:
+    amounts = {amount_text(row["observed"], row["unit"]) for row in rows}
+    if len(amounts) > 1:
         return "; ".join(f"{measured_and_required_text(row, rule)}{profile_text(row['profile'])}" for row in ordered)
     needs = ", ".join(f"{amount_text(row['required'], row['unit'])}{profile_text(row['profile'])}" for row in ordered)
-    return text_with_minus_signs(f"{found.pop()}, must be {SENSE_WORDS.get(rule['sense'], '')}{needs}")
+    return text_with_minus_signs(f"{amounts.pop()}, must be {SENSE_WORDS.get(rule['sense'], '')}{needs}")
 
 
 def _finding_time_text(row: Row, rule: Row, drive_start_ns: int) -> str:
@@ -110,29 +112,31 @@ def _finding_time_text(row: Row, rule: Row, drive_start_ns: int) -> str:
 def _certainties_text(rows: Sequence[Row]) -> str:
     """Return in words how sure findings are, one per event; '' for verdicts without findings."""
     findings = [row for row in rows if "finding_id" in row]
-    found: list[Row] = []
+    event_rows: list[Row] = []
     for place in sorted(set(places := representative_indices(findings))):
-        event = [row for row, other in zip(findings, places, strict=True) if other == place]
-        found.append(min(event, key=lambda row: _CERTAINTY_ORDER.index(certainty(row))))
-    if not found:
+        event = [row for row, index in zip(findings, places, strict=True) if index == place]
+        event_rows.append(min(event, key=lambda row: _CERTAINTY_ORDER.index(certainty(row))))
+    if not event_rows:
         return ""
-    if len(found) == 1:
-        return f"; {certainty_text(found[0]) or 'certainty not examined'}"
-    n = Counter(certainty(row) or "not examined" for row in found)
-    return f" ({plural(len(found), 'finding')}: {', '.join(f'{n[word]} {word}' for word in sorted(n, reverse=True))})"
+    if len(event_rows) == 1:
+        return f"; {certainty_text(event_rows[0]) or 'certainty not examined'}"
+    n = Counter(certainty(row) or "not examined" for row in event_rows)
+    return (
+        f" ({plural(len(event_rows), 'finding')}: {', '.join(f'{n[word]} {word}' for word in sorted(n, reverse=True))})"
+    )
 
 
 def _judged_times_text(rows: Sequence[Row], span_ns: tuple[int, int], drive_start_ns: int) -> str:
     """Return in words when a rule was judged; '' if it was judged in all of the span."""
-    found = sorted({(row["t_start_ns"], row["t_end_ns"]) for row in rows if row["t_start_ns"] is not None})
-    if not found or any(start <= span_ns[0] and end >= span_ns[1] for start, end in found):
+    times = sorted({(row["t_start_ns"], row["t_end_ns"]) for row in rows if row["t_start_ns"] is not None})
+    if not times or any(start <= span_ns[0] and end >= span_ns[1] for start, end in times):
         return ""
-    if len(found) > _MOST_LISTED_JUDGED_TIMES:
-        first, last = seconds(found[0][0], drive_start_ns), seconds(max(end for _, end in found), drive_start_ns)
-        return f"{len(found)} times, {first[:-2]} to {last}"
+    if len(times) > _MOST_LISTED_JUDGED_TIMES:
+        first, last = seconds(times[0][0], drive_start_ns), seconds(max(end for _, end in times), drive_start_ns)
+        return f"{len(times)} times, {first[:-2]} to {last}"
     return ", ".join(
         seconds(start, drive_start_ns)
         if start == end
         else f"{seconds(start, drive_start_ns)[:-2]} to {seconds(end, drive_start_ns)}"
-        for start, end in found
+        for start, end in times
     )

@@ -56,16 +56,16 @@ def charts_over_time(
     `gap_courses`: rows of the table `course` of rules that require a distance between the two parties, each with its `title`;
     `finding_course`: the finding's own row of `course` if it measures another quantity.
     """
-    shown = [i for i, t in enumerate(motion.t) if _FROM_S - 1e-9 <= t <= _TO_S + 1e-9]
-    t = [float(motion.t[i]) for i in shown]
+    steps = [i for i, t in enumerate(motion.t) if _FROM_S - 1e-9 <= t <= _TO_S + 1e-9]
+    t = [float(motion.t[i]) for i in steps]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     speeds = [
-        _ChartLine(kind, name, t, [float(v[i]) for i in shown])
+        _ChartLine(kind, name, t, [float(v[i]) for i in steps])
         for kind, name, v in zip(("ego", "met"), party_names, motion.speed, strict=False)
     ]
     charts = [_chart_values("Speed, m/s", speeds, x, from_zero=True)]
     if len(party_names) > 1:
-        lines = [_ChartLine("gap", "gap", t, [float(motion.gap[i]) for i in shown])]
+        lines = [_ChartLine("gap", "gap", t, [float(motion.gap[i]) for i in steps])]
         lines += [
             _course_line(row, "required", f"required: {row['title']}{row['planned']}", moment_ns, t)._replace(
                 title=f"required: {row['title']}",
@@ -90,7 +90,7 @@ def gap_and_finding_courses(case: Case) -> tuple[list[dict[str, Any]], dict[str,
     about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
     if case.finding.is_near_miss:
         units[None] = about["unit"]  # the courses of near misses have no finding
-    gaps, own = [], None
+    gaps, own_course = [], None
     for row in case.result.courses.to_pylist():
         rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
         if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
@@ -101,11 +101,11 @@ def gap_and_finding_courses(case: Case) -> tuple[list[dict[str, Any]], dict[str,
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
             gaps.append({**row, "title": title, "planned": profile_text(row["profile"])})
         elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
-            own = {
+            own_course = {
                 **row,
                 "title": f"{text_with_party_names(rule['observes'] or title, PARTY_LETTERS[0])}, {unit_text(unit)}",
             }
-    return gaps, own if own and any(value is not None for value in own["observed"]) else None
+    return gaps, own_course if own_course and any(value is not None for value in own_course["observed"]) else None
 
 
 def _course_line(course_row: Row, column: str, name: str, moment_ns: int, t: Sequence[float]) -> _ChartLine:
@@ -117,27 +117,27 @@ def _course_line(course_row: Row, column: str, name: str, moment_ns: int, t: Seq
 
 
 def _chart_values(title: str, lines: Sequence[_ChartLine], x: Axis, *, from_zero: bool = False) -> dict[str, Any]:
-    known = [v for line in lines for v in line.values if math.isfinite(v)]
-    known += [0.0] if from_zero and known else []
-    y = axis_around(known or [0.0], _BOTTOM, _TOP)
-    shown = [line for line in lines if any(math.isfinite(v) for v in line.values)]
-    drawn = [
+    finite_values = [v for line in lines for v in line.values if math.isfinite(v)]
+    finite_values += [0.0] if from_zero and finite_values else []
+    y = axis_around(finite_values or [0.0], _BOTTOM, _TOP)
+    visible_lines = [line for line in lines if any(math.isfinite(v) for v in line.values)]
+    drawn_lines = [
         {
             "kind": line.kind,
             "name": line.name,
             "legend": ""
-            if line.title and line.title in {other.title for other in shown[:i]}
+            if line.title and line.title in {earlier_line.title for earlier_line in visible_lines[:i]}
             else line.title or line.name,
             "d": _svg_path(line, x, y),
             "dots": _dots_of_short_line(line, x, y),
             "label": line.label,
             "labels": _label_positions(line, x, y, i),
         }
-        for i, line in enumerate(shown)
+        for i, line in enumerate(visible_lines)
     ]
     return {
         "title": title,
-        "lines": drawn,
+        "lines": drawn_lines,
         "x_ticks": x.ticks(12),
         "y_ticks": y.ticks(4),
         "zero": svg_number(x.at(0.0)),

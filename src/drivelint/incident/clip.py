@@ -53,12 +53,12 @@ def write_clip(request: ConvertRequest, finding_name: str, result_folder: Path, 
             tried = convert(replace(request, out=Path(place) / "clip", clip=clip))
             same = _gives_finding(tried.path, run_options, finding, judge)
         if same:
-            written = convert(replace(request, clip=clip))
-            notes = (*written.notes, _clip_sentence(finding, clip, before_s, after_s))
+            written_clip = convert(replace(request, clip=clip))
+            notes = (*written_clip.notes, _clip_sentence(finding, clip, before_s, after_s))
             options = rule_selection_options(
                 run_options, result.rules["rule_id"].to_pylist(), rule_ids_named_by_user(result.rules)
             )
-            return replace(written, notes=notes, check_options=tuple(options))
+            return replace(written_clip, notes=notes, check_options=tuple(options))
     raise UsageError(
         f"finding {finding.row['finding_id']}: judging the whole log again does not give this finding: the tool, the rule or an option "
         "has changed: check the drive again"
@@ -102,10 +102,10 @@ def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, j
     options = replace(run_options, **{**defaults, "ego": finding.row["ego_id"] or None})
     try:
         drive = drive_with_map(read_trace(path, options.ingest_options()), MapLibrary(options))
-        judged = judge.judge(drive, finding.row["ego_id"], finding.row["object_id"])
+        ego_rows = judge.judge(drive, finding.row["ego_id"], finding.row["object_id"])
     except DriveLintError:
         return False  # a longer clip may succeed
-    return matching_finding(judged.findings, finding.row) is not None
+    return matching_finding(ego_rows.findings, finding.row) is not None
 
 
 def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:

@@ -61,22 +61,26 @@ def _shortest_rules_options(
     run_options: RunRequest, rule_ids: Sequence[str], named_rule_ids: Collection[str]
 ) -> list[str]:
     """Return the shortest options that select these rules, and by their ids the named rules whose signals few logs have."""
-    known, wanted = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
-    rules = [known[rule_id] for rule_id in sorted(wanted & known.keys())]
+    known_rules, wanted_ids = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
+    rules = [known_rules[rule_id] for rule_id in sorted(wanted_ids & known_rules.keys())]
     # if its id does not select it, such a rule does not apply instead of being unknown
     of_few_logs = [rule.id for rule in rules if SIGNALS_OF_FEW_LOGS & set(rule.needed_signals)]
-    named = [rule_id for rule_id in of_few_logs if rule_id in named_rule_ids]
-    by_ids = _rules_option_words(sorted(wanted))
-    candidates = [by_ids] if named == of_few_logs else []
+    named_of_few_logs = [rule_id for rule_id in of_few_logs if rule_id in named_rule_ids]
+    by_ids = _rules_option_words(sorted(wanted_ids))
+    candidates = [by_ids] if named_of_few_logs == of_few_logs else []
     packs = sorted({rule.pack for rule in rules})
     stable = sorted({rule.pack for rule in rules if rule.status == "stable"})
     # without --rules, the stable rules are selected; with a name alone, only that rule
-    bases = [*([] if named else [[]]), *([pack] for pack in packs), *([f"{pack},status:stable"] for pack in stable)]
-    for chosen in ([*base, *named] for base in bases):
-        selected = {rule.id for rule in catalogue.select_rules(known, chosen, ())}
-        if wanted <= selected:
-            left_out = (word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))
-            candidates.append([*_rules_option_words(chosen), *left_out])
+    bases = [
+        *([] if named_of_few_logs else [[]]),
+        *([pack] for pack in packs),
+        *([f"{pack},status:stable"] for pack in stable),
+    ]
+    for include in ([*base, *named_of_few_logs] for base in bases):
+        selected = {rule.id for rule in catalogue.select_rules(known_rules, include, ())}
+        if wanted_ids <= selected:
+            left_out = (word for rule_id in sorted(selected - wanted_ids) for word in ("--ignore", rule_id))
+            candidates.append([*_rules_option_words(include), *left_out])
     return min(candidates or [by_ids], key=len)
 
 

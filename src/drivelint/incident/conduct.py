@@ -41,45 +41,47 @@ def conduct_texts_and_counts(
     titles forbid. `beside`: rules about contacts that found none although another rule did; these rules do not count as kept.
     `only_hit`: only rules about contacts were broken. `is_about_contact`: the sheet is about a contact.
     """
-    told = {
+    rows_in_span = {
         name: [row for row in rows if _overlaps_span(row, span_ns)] for name, rows in (("v", verdicts), ("f", findings))
     }
-    by_rule = group_rows(told["v"], lambda row: row["rule_id"])
-    found = group_rows(told["f"], lambda row: row["rule_id"])
+    by_rule = group_rows(rows_in_span["v"], lambda row: row["rule_id"])
+    findings_by_rule = group_rows(rows_in_span["f"], lambda row: row["rule_id"])
     failures = {rule: [row for row in rows if row["verdict"] == "fail"] for rule, rows in by_rule.items()}
     # a verdict's interval may be longer than the span: the times of its findings decide
     failed = {rule for rule, rows in failures.items() if any(not row["finding_ids"] for row in rows)}
-    elsewhere = {rule for rule, rows in failures.items() if rows} - failed - found.keys()
-    broken = sorted(found.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule))
+    elsewhere = {rule for rule, rows in failures.items() if rows} - failed - findings_by_rule.keys()
+    broken = sorted(
+        findings_by_rule.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule)
+    )
     rest = {rule: rows for rule, rows in sorted(by_rule.items()) if rule not in set(broken)}
     undecided = {
         rule: rows for rule, rows in rest.items() if any(row["verdict"] in _UNDECIDED_VERDICTS for row in rows)
     }
-    kept = [
+    kept_rules = [
         rule
         for rule, rows in rest.items()
         if rule not in undecided and rule not in elsewhere and any(row["verdict"] == "pass" for row in rows)
     ]
     is_about_contact |= any(CONTACT_TAG in rules[rule]["tags"] for rule in broken)
-    beside = [rule for rule in kept if is_about_contact and CONTACT_TAG in rules[rule]["tags"]]
-    kept = [rule for rule in kept if rule not in beside]
-    passed = {rule: [row for row in rest[rule] if row["verdict"] == "pass"] for rule in (*kept, *beside)}
+    beside = [rule for rule in kept_rules if is_about_contact and CONTACT_TAG in rules[rule]["tags"]]
+    kept_rules = [rule for rule in kept_rules if rule not in beside]
+    passed = {rule: [row for row in rest[rule] if row["verdict"] == "pass"] for rule in (*kept_rules, *beside)}
     lines = {rule: kept_rule_line(rules[rule], rows, span_ns, drive_start_ns) for rule, rows in passed.items()}
     parts = {
         "broken": [
             broken_rule_line(
                 rules[rule],
-                found.get(rule) or [row for row in by_rule[rule] if row["verdict"] == "fail"],
+                findings_by_rule.get(rule) or [row for row in by_rule[rule] if row["verdict"] == "fail"],
                 drive_start_ns,
             )
             for rule in broken
         ],
-        "kept": [lines[rule] for rule in kept if EXCUSABLE_RULE_TAG not in rules[rule]["tags"]],
-        "excused": [lines[rule] for rule in kept if EXCUSABLE_RULE_TAG in rules[rule]["tags"]],
+        "kept": [lines[rule] for rule in kept_rules if EXCUSABLE_RULE_TAG not in rules[rule]["tags"]],
+        "excused": [lines[rule] for rule in kept_rules if EXCUSABLE_RULE_TAG in rules[rule]["tags"]],
         "reasons": _undecided_reasons(undecided, rules),
     }
     return {
-        "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
+        "n": {"broken": len(broken), "kept": len(kept_rules), "undecided": len(undecided)},
         **parts,
         "only_hit": bool(broken) and all(CONTACT_TAG in rules[rule]["tags"] for rule in broken),
         "beside": [lines[rule] for rule in beside],
@@ -129,12 +131,12 @@ def _undecided_reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[st
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED_VERDICTS]
     of_rules: dict[str, set[str]] = {}
     for rows in group_rows(unknown, lambda row: verdict_reason(row).kind).values():
-        given = (verdict_reason(row) for row in rows)
-        why = summarise_reasons(reason._replace(text=reason_without_advice(reason.text)) for reason in given)
+        reasons = (verdict_reason(row) for row in rows)
+        why = summarise_reasons(reason._replace(text=reason_without_advice(reason.text)) for reason in reasons)
         of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # reasons may differ only in advice
-    told = [
-        UndecidedReason(why, tuple(quoted_title(rules[rule]) for rule in sorted(found)))
-        for why, found in of_rules.items()
+    merged_reasons = [
+        UndecidedReason(why, tuple(quoted_title(rules[rule]) for rule in sorted(rule_ids)))
+        for why, rule_ids in of_rules.items()
     ]
     contacts = {quoted_title(rule) for rule in rules.values() if CONTACT_TAG in rule["tags"]}
-    return sorted(told, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))
+    return sorted(merged_reasons, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))

@@ -57,18 +57,18 @@ def delta_v_text(motion: MotionOfParties, party: int, step_before: int | None, t
     checks = {row["check_id"] for row in rows if row["actor_id"] in {None, actor_id}}
     if "velocity_filtered" in checks:
         return "not known: the log has only a mean of its velocity, which hides an impact"
-    found = greatest_delta_v(motion, party, step_before)
-    if found is None:
+    change = greatest_delta_v(motion, party, step_before)
+    if change is None:
         return (
             f"not known: its velocity is missing in part, from {_signed_time_text(motion.t[step_before])} "
             f"to {_signed_time_text(IMPACT_WINDOW_S)}"
         )
-    least = "at least " if found.is_least else ""
+    least = "at least " if change.is_least else ""
     derived = "; velocities computed from positions" if "velocity_derived" in checks else ""
-    turned = _speeds_and_course_text(motion, party, step_before, found)
+    turned = _speeds_and_course_text(motion, party, step_before, change)
     return (
-        f"{least}{speed_text(found.mps)}, from {_signed_time_text(motion.t[step_before])} "
-        f"to {_signed_time_text(found.at_s)}{turned}{derived}"
+        f"{least}{speed_text(change.mps)}, from {_signed_time_text(motion.t[step_before])} "
+        f"to {_signed_time_text(change.at_s)}{turned}{derived}"
     )
 
 

@@ -73,10 +73,10 @@ def named_finding(result: Result, name: str, *, with_near_misses: bool = False) 
     word, _, drive_id = name.partition("@")
     is_near_miss = with_near_misses and name.startswith(_NEAR_MISS_ID_PREFIX)
     if word == CONTACT_TAG:
-        found = [row for row in contact_findings(result) if row["drive_id"].startswith(drive_id)]
-        if not found:
+        contacts = [row for row in contact_findings(result) if row["drive_id"].startswith(drive_id)]
+        if not contacts:
             raise UsageError(f"--incident {name}: {_no_contact_message(result, drive_id)}")
-        row = found[0]
+        row = contacts[0]
     elif is_near_miss:
         row = _near_miss_with_id(result, name)
     else:
@@ -96,10 +96,10 @@ def near_misses(result: Result) -> list[Row]:
     content = {drive["drive_id"]: drive["sha256"] for drive in result.drives.to_pylist()}
     tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}
     unknown = dict.fromkeys(("n_copies", "n_stays", "closing_mps", "lat", "lon"))
-    found = [{**unknown, **row, "finding_id": _near_miss_id(row, content[row["drive_id"]])} for row in rows]
+    misses = [{**unknown, **row, "finding_id": _near_miss_id(row, content[row["drive_id"]])} for row in rows]
     # margins of different units do not compare: a near miss of a contact is the nearest
     return sorted(
-        found,
+        misses,
         key=lambda row: (CONTACT_TAG not in tags[row["rule_id"]], row["margin"], row["drive_id"], row["finding_id"]),
     )
 
@@ -119,13 +119,13 @@ def _near_miss_id(row: Row, content_sha256: str) -> str:
 
 def _near_miss_with_id(result: Result, id_prefix: str) -> Row:
     """Return the near miss whose id begins with `id_prefix`. Errors: `UsageError` if there is none, or more than one."""
-    found = [row for row in near_misses(result) if row["finding_id"].startswith(id_prefix)]
-    if len(found) != 1:
+    misses = [row for row in near_misses(result) if row["finding_id"].startswith(id_prefix)]
+    if len(misses) != 1:
         raise UsageError(
-            f"--incident {id_prefix}: {'several near misses have' if found else 'no near miss has'} an id with this beginning: "
+            f"--incident {id_prefix}: {'several near misses have' if misses else 'no near miss has'} an id with this beginning: "
             "name it by its rule and drive (RULE@DRIVE)"
         )
-    return found[0]
+    return misses[0]
 
 
 def _nearest_miss_of_rule(result: Result, verdict: Row, *, is_same_drive: bool) -> Row | None:
@@ -137,28 +137,28 @@ def _nearest_miss_of_rule(result: Result, verdict: Row, *, is_same_drive: bool) 
 def contact_findings(result: Result) -> list[Row]:
     """Return the findings that are contacts, the worst first, sure findings before findings that are only possible."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    found: list[Row] = worst_first(result.findings, rules).to_pylist()
-    return [row for row in found if is_contact(row, rules)]
+    findings: list[Row] = worst_first(result.findings, rules).to_pylist()
+    return [row for row in findings if is_contact(row, rules)]
 
 
 def _no_contact_message(result: Result, drive_id_prefix: str) -> str:
     """Return what to do if no finding is a contact. `drive_id_prefix`: the beginning of the drive's id; '' for all drives."""
     near = [row for row in near_misses(result) if row["drive_id"].startswith(drive_id_prefix)]
     broken = {(row["rule_id"], row["drive_id"]) for row in result.findings.to_pylist()}
-    found = any(drive.startswith(drive_id_prefix) for _, drive in broken)
-    told = f"no finding is a contact{f' in {drive_id_prefix}' if drive_id_prefix else ''}"
+    has_findings = any(drive.startswith(drive_id_prefix) for _, drive in broken)
+    message = f"no finding is a contact{f' in {drive_id_prefix}' if drive_id_prefix else ''}"
     if near:
         rule, drive = near[0]["rule_id"], near[0]["drive_id"]
-        named = near[0]["finding_id"] if (rule, drive) in broken else f"{rule}@{drive}"
+        name = near[0]["finding_id"] if (rule, drive) in broken else f"{rule}@{drive}"
         folder = "DIR" if result.folder is None else shlex.quote(str(result.folder))
-        told += f": the nearest miss has a sheet: drivelint report {folder} --incident {named}"
-        return f"{told}; or name another finding" if found else told
+        message += f": the nearest miss has a sheet: drivelint report {folder} --incident {name}"
+        return f"{message}; or name another finding" if has_findings else message
     drives = [drive for drive in result.drives.to_pylist() if drive["drive_id"].startswith(drive_id_prefix)]
     unjudged = [drive for drive in drives if drive["status"] == "not_judged"]
-    if unjudged and not found:
+    if unjudged and not has_findings:
         of_all = f"{len(unjudged)} of {plural(len(drives), 'drive')}"
-        return f"{told}, but not judged: {of_all} ({unjudged[0]['status_reason']})"
-    return f"{told}: {'name another finding' if found else 'nothing was found there that a sheet could be about'}"
+        return f"{message}, but not judged: {of_all} ({unjudged[0]['status_reason']})"
+    return f"{message}: {'name another finding' if has_findings else 'nothing was found there that a sheet could be about'}"
 
 
 def _worst_finding_of_verdict(verdict: Row, result: Result) -> dict[str, Any]:

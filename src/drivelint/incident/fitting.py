@@ -103,18 +103,18 @@ def is_first_page_full(sheet_values: dict[str, Any]) -> bool:
         [_n_wrapped_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _PARTY_LINE_CHARACTERS) for p in parties]
     ]
     rows += [[_n_wrapped_lines(p[name], _PARTY_LINE_CHARACTERS) for p in parties] for name in _PARTY_CELL_KEYS]
-    rows += [[sum(_n_wrapped_lines(each, _PARTY_LINE_CHARACTERS) for each in p["slowed"]) or 1 for p in parties]]
+    rows += [[sum(_n_wrapped_lines(text, _PARTY_LINE_CHARACTERS) for text in p["slowed"]) or 1 for p in parties]]
     against = [
         sheet_values["against"] or "",
         sheet_values["least"] or "",
-        *(f"contact also {each}" for each in sheet_values["contacts"].texts),
+        *(f"contact also {text}" for text in sheet_values["contacts"].texts),
     ]
     across = [sheet_values["story"], sheet_values["what"]]
     lines = max(facts) + sum(max(row) for row in rows) + _n_wrapped_lines(" ".join(against), 2 * _PARTY_LINE_CHARACTERS)
     lines += _n_wrapped_lines(", ".join(sheet_values["drawn"]), _PAGE_LINE_CHARACTERS)
     return (
         lines * _TABLE_LINE_PX
-        + sum(_n_wrapped_lines(each, _PAGE_LINE_CHARACTERS) for each in across) * _SENTENCE_LINE_PX
+        + sum(_n_wrapped_lines(text, _PAGE_LINE_CHARACTERS) for text in across) * _SENTENCE_LINE_PX
         > _LARGEST_HEIGHT_OF_TABLES_PX
     )
 
@@ -130,11 +130,13 @@ def _n_wrapped_lines(text: str, width: int) -> int:
 
 def remove_and_return_shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Remove the reasons that all parties share, with the same rules, from each party, and return these reasons."""
-    given = [told["reasons"] for told in parties if "reasons" in told]
-    shared = [reason for reason in given[0] if all(reason in others for others in given[1:])] if len(given) > 1 else []
-    for told in parties:
-        if "reasons" in told:
-            told["reasons"] = [reason for reason in told["reasons"] if reason not in shared]
+    lists = [party["reasons"] for party in parties if "reasons" in party]
+    shared = (
+        [reason for reason in lists[0] if all(reason in reasons for reasons in lists[1:])] if len(lists) > 1 else []
+    )
+    for party in parties:
+        if "reasons" in party:
+            party["reasons"] = [reason for reason in party["reasons"] if reason not in shared]
     return {"reasons": shared}
 
 
@@ -149,13 +151,13 @@ def fit_conduct_lists_and_return_further_pages(
     `unused_rows_of_seconds`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
     """
     lists = [
-        (told, name, list(told[name])) for name in _RESERVED_CHARACTERS_BY_PART for told in parties if name in told
+        (party, name, list(party[name])) for name in _RESERVED_CHARACTERS_BY_PART for party in parties if name in party
     ]
     parts = [
-        (told, name, min(_least_characters(told[name], name), room))
+        (party, name, min(_least_characters(party[name], name), room))
         for name, room in _RESERVED_CHARACTERS_BY_PART.items()
-        for told in parties
-        if name in told
+        for party in parties
+        if name in party
     ]
     spare = (
         _MOST_CHARACTERS_OF_ALL_PARTS
@@ -170,19 +172,19 @@ def fit_conduct_lists_and_return_further_pages(
     rooms = [room for *_, room in parts]
     for wanted_characters in (_least_characters, _full_characters):
         for first in _PARTS_THAT_GET_FREE_SPACE_FIRST:
-            for i, (told, name, _) in enumerate(parts):
+            for i, (party, name, _) in enumerate(parts):
                 if name == first:
-                    more = min(max(wanted_characters(told[name], name) - rooms[i], 0), max(spare, 0))
+                    more = min(max(wanted_characters(party[name], name) - rooms[i], 0), max(spare, 0))
                     rooms[i] += more
                     spare -= more
-    for (told, name, _), room in zip(parts, rooms, strict=True):
+    for (party, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitted_reasons if name == "reasons" else _fitted_texts_of_part
-        told[name] = fitting(told[name], name, room + max(spare, 0))
-        spare -= max(_n_characters(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
-    if not any(told["broken"].more for told in parties if "broken" in told):
+        party[name] = fitting(party[name], name, room + max(spare, 0))
+        spare -= max(_n_characters(party[name].texts, name) + _TITLES_NOTE_CHARACTERS * party[name].is_short - room, 0)
+    if not any(party["broken"].more for party in parties if "broken" in party):
         return []
     return _further_pages(
-        [ContinuedTexts(told, name, _texts_that_do_not_fit(texts, told[name])) for told, name, texts in lists]
+        [ContinuedTexts(party, name, _texts_that_do_not_fit(texts, party[name])) for party, name, texts in lists]
     )
 
 
@@ -196,19 +198,19 @@ def _further_pages(lists: Sequence[ContinuedTexts]) -> list[list[ContinuedTexts]
     """Distribute the lists over as many pages as they need; a list that goes on has a heading on each page."""
     pages: list[list[ContinuedTexts]] = []
     room = 0
-    for told, part, texts in lists:
+    for party, part, texts in lists:
         on_page: ContinuedTexts | None = None
         for text in texts:
-            needed = len(text) + _UNUSED_LINE_END_CHARACTERS_BY_PART["broken"]
-            if needed + _CHARACTERS_OF_A_HEADING * (on_page is None) > room:
+            text_characters = len(text) + _UNUSED_LINE_END_CHARACTERS_BY_PART["broken"]
+            if text_characters + _CHARACTERS_OF_A_HEADING * (on_page is None) > room:
                 pages.append([])
                 room, on_page = _CHARACTERS_OF_A_FURTHER_PAGE, None
             if on_page is None:
-                on_page = ContinuedTexts(told, part, [])
+                on_page = ContinuedTexts(party, part, [])
                 pages[-1].append(on_page)
                 room -= _CHARACTERS_OF_A_HEADING
             on_page.texts.append(text)
-            room -= needed
+            room -= text_characters
     return pages
 
 
@@ -217,16 +219,16 @@ def _parts_with_less_space(parts: Sequence[_PartWithRoom], by_characters: int) -
     rooms = [room for *_, room in parts]
     for giving in ("excused", "kept", "reasons", "broken"):
         spared = {
-            i: room - (min(_least_characters(told[name][:1], name), room) if giving == "reasons" else 0)
-            for i, (told, name, room) in enumerate(parts)
+            i: room - (min(_least_characters(party[name][:1], name), room) if giving == "reasons" else 0)
+            for i, (party, name, room) in enumerate(parts)
             if name == giving
         }
-        held = sum(spared.values())
-        taken = min(by_characters, held)
-        by_characters -= taken
+        n_spared = sum(spared.values())
+        n_taken = min(by_characters, n_spared)
+        by_characters -= n_taken
         for i, n in spared.items():
-            rooms[i] -= taken * n // max(held, 1)
-    return [(told, name, room) for (told, name, _), room in zip(parts, rooms, strict=True)]
+            rooms[i] -= n_taken * n // max(n_spared, 1)
+    return [(party, name, room) for (party, name, _), room in zip(parts, rooms, strict=True)]
 
 
 def first_fitted_texts(texts: Sequence[str], max_characters: int) -> FittedTexts:
@@ -243,14 +245,14 @@ def _least_characters(texts: Sequence[Any], part: str) -> int:
     if part != "reasons":
         return _n_characters(texts, part)
     return min(
-        _n_characters([each.full_text for each in texts], part),
+        _n_characters([reason.full_text for reason in texts], part),
         _n_characters(_shortest_reason_texts(texts), part) + _TITLES_NOTE_CHARACTERS,
     )
 
 
 def _full_characters(texts: Sequence[Any], part: str) -> int:
     """Return the characters that all texts of a part take, with the titles of all rules."""
-    return _n_characters([each.full_text for each in texts] if part == "reasons" else texts, part)
+    return _n_characters([reason.full_text for reason in texts] if part == "reasons" else texts, part)
 
 
 def _n_characters(texts: Sequence[str], part: str) -> int:
@@ -260,25 +262,25 @@ def _n_characters(texts: Sequence[str], part: str) -> int:
 
 def _fitted_texts_of_part(texts: Sequence[str], part: str, max_characters: int) -> FittedTexts:
     """Return the first texts that fit; at least one, except for parts in `_OMISSIBLE_PARTS`."""
-    shown = list(texts[:1])
+    fitting_texts = list(texts[:1])
     if part in _OMISSIBLE_PARTS and texts and max_characters < len(texts[0]) // 2:
         return FittedTexts([], len(texts))
     for text in texts[1:]:
-        if _n_characters([*shown, text], part) > max_characters:
+        if _n_characters([*fitting_texts, text], part) > max_characters:
             break
-        shown.append(text)
-    return FittedTexts(shown, len(texts) - len(shown))
+        fitting_texts.append(text)
+    return FittedTexts(fitting_texts, len(texts) - len(fitting_texts))
 
 
 def _fitted_reasons(reasons: Sequence[UndecidedReason], part: str, max_characters: int) -> FittedTexts:
     """Return the reasons that fit. Until all fit, the longest lists of titles are replaced by numbers, then reasons are left out."""
-    shown, shortest = [reason.full_text for reason in reasons], _shortest_reason_texts(reasons)
-    if _n_characters(shown, part) <= max_characters:
-        return FittedTexts(shown, 0)
-    for i in sorted(range(len(shown)), key=lambda i: (len(shortest[i]) - len(shown[i]), i)):
-        shown[i] = shortest[i]
-        if _n_characters(shown, part) + _TITLES_NOTE_CHARACTERS <= max_characters:
+    texts, shortest = [reason.full_text for reason in reasons], _shortest_reason_texts(reasons)
+    if _n_characters(texts, part) <= max_characters:
+        return FittedTexts(texts, 0)
+    for i in sorted(range(len(texts)), key=lambda i: (len(shortest[i]) - len(texts[i]), i)):
+        texts[i] = shortest[i]
+        if _n_characters(texts, part) + _TITLES_NOTE_CHARACTERS <= max_characters:
             break
-    fitting = _fitted_texts_of_part(shown, part, max_characters - _TITLES_NOTE_CHARACTERS)
+    fitting = _fitted_texts_of_part(texts, part, max_characters - _TITLES_NOTE_CHARACTERS)
     full = {reason.full_text for reason in reasons}
     return fitting._replace(is_short=any(text not in full for text in fitting.texts))

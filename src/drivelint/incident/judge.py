@@ -55,14 +55,18 @@ class Judge:
 
         Errors: `UsageError` for a rule that is not in the catalogue.
         """
-        known = catalogue.load_rules(run_options.rules_dirs)
-        named = {row["rule_id"]: row["is_named"] for row in rules_of_run.to_pylist()}
-        if gone := sorted(named.keys() - known.keys()):
-            raise UsageError(f"rule {gone[0]} is not in the catalogue any more: check the drives again")
-        rules = [msgspec.structs.replace(known[rule_id], is_named=named[rule_id]) for rule_id in sorted(named)]
-        mine = [each for each in run_options.params if each.partition("=")[0].strip().rpartition(".")[0] in named]
+        known_rules = catalogue.load_rules(run_options.rules_dirs)
+        is_named = {row["rule_id"]: row["is_named"] for row in rules_of_run.to_pylist()}
+        if missing_ids := sorted(is_named.keys() - known_rules.keys()):
+            raise UsageError(f"rule {missing_ids[0]} is not in the catalogue any more: check the drives again")
+        rules = [
+            msgspec.structs.replace(known_rules[rule_id], is_named=is_named[rule_id]) for rule_id in sorted(is_named)
+        ]
+        own_params = [
+            param for param in run_options.params if param.partition("=")[0].strip().rpartition(".")[0] in is_named
+        ]
         profiles = profile_table(load_profiles(run_options.rules_dirs), run_options.profiles)
-        return cls(rules, catalogue.parse_params(rules, mine), profiles, memory)
+        return cls(rules, catalogue.parse_params(rules, own_params), profiles, memory)
 
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None

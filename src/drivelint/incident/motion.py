@@ -145,11 +145,11 @@ class MotionOfParties:
 
     def sudden_speed_loss_mask(self, party: int) -> Mask:
         """Return a mask of the steps at which a party has lost speed since the previous step faster than tyres can brake."""
-        lost = -np.diff(self.speed[party], prepend=self.speed[party][:1])
-        found: Mask = (lost >= _LEAST_IMPACT_LOSS_MPS) & (
-            lost >= _LEAST_IMPACT_LOSS_MPS2 * np.diff(self.t, prepend=-np.inf)
+        loss_mps = -np.diff(self.speed[party], prepend=self.speed[party][:1])
+        mask: Mask = (loss_mps >= _LEAST_IMPACT_LOSS_MPS) & (
+            loss_mps >= _LEAST_IMPACT_LOSS_MPS2 * np.diff(self.t, prepend=-np.inf)
         )
-        return found
+        return mask
 
     def has_sudden_speed_loss(self, party: int, step_no: int, over_s: float) -> bool:
         """Return whether a party lost speed faster than tyres can brake in the `over_s` before a step."""
@@ -161,8 +161,8 @@ def _backwards_mask(columns: dict[str, Floats], column_prefix: str) -> Mask:
     """Return a mask of the steps at which a party moves against its heading, faster than a standing vehicle may seem to move."""
     yaw = columns[f"{column_prefix}yaw_rad"]
     along: Floats = columns[f"{column_prefix}vx_mps"] * np.cos(yaw) + columns[f"{column_prefix}vy_mps"] * np.sin(yaw)
-    found: Mask = along < -_LARGEST_STANDING_SPEED_MPS
-    return found
+    mask: Mask = along < -_LARGEST_STANDING_SPEED_MPS
+    return mask
 
 
 def _side_by_side_masks(columns: dict[str, Floats]) -> tuple[Mask, Mask]:
@@ -225,7 +225,7 @@ def slowing_periods(motion: MotionOfParties, party: int, until_s: float) -> list
         if mean[i] <= -LEAST_SLOWING_MPS2
         and not motion.has_sudden_speed_loss(party, i, _ACCELERATION_AVERAGING_PERIOD_S)
     ]
-    found = [
+    periods = [
         SlowingPeriod(float(t[i - 1]), float(t[i]), float(v[i - 1]), float(v[i]), math.nan, sudden=True)
         for i in steps.tolist()
         if sudden[i]
@@ -240,12 +240,12 @@ def slowing_periods(motion: MotionOfParties, party: int, until_s: float) -> list
         # the deceleration is a mean of the half second before a step: slowing began at the highest speed in it
         within = np.flatnonzero((t >= t[run[0]] - _ACCELERATION_AVERAGING_PERIOD_S - 1e-9) & (t <= t[run[0]]))
         first = int(within[::-1][np.argmax(v[within[::-1]])])
-        found.append(
+        periods.append(
             SlowingPeriod(
                 float(t[first]), float(t[run[-1]]), float(v[first]), float(v[run[-1]]), -min(mean[i] for i in run)
             )
         )
-    return sorted(found)
+    return sorted(periods)
 
 
 def rows_of_seconds_table(motion: MotionOfParties, last_before_contact_s: float | None) -> list[dict[str, Any]]:
@@ -290,10 +290,10 @@ def _row_at_step(
 def _box_distances_m(columns: dict[str, Floats]) -> Floats:
     """Return the distance of the two boxes at each step in m; 0 where they overlap."""
     a, b = (_box_corners_m(columns, prefix) for prefix in ("", "object_"))
-    known: Mask = np.isfinite(np.concatenate([a, b], axis=1)).all(axis=(1, 2))
-    found = np.full(len(a), np.nan)
-    found[known] = shapely.distance(shapely.polygons(a[known]), shapely.polygons(b[known]))
-    return found
+    known_mask: Mask = np.isfinite(np.concatenate([a, b], axis=1)).all(axis=(1, 2))
+    distances_m = np.full(len(a), np.nan)
+    distances_m[known_mask] = shapely.distance(shapely.polygons(a[known_mask]), shapely.polygons(b[known_mask]))
+    return distances_m
 
 
 def _box_corners_m(columns: dict[str, Floats], prefix: str) -> Floats:

@@ -80,20 +80,20 @@ def party_values(
 def party_kinds(case: Case) -> list[str | None]:
     """Return the class of each party in words; None if it is not recorded."""
     classes = {row["actor_id"]: row["actor_class"] for row in case.drive.trace.tables["actor"].to_pylist()}
-    return [(classes.get(who) or "").replace("_", " ") or None for who in case.finding.parties]
+    return [(classes.get(actor_id) or "").replace("_", " ") or None for actor_id in case.finding.parties]
 
 
 def _slowing_texts(slowings: Sequence[SlowingPeriod], last_before_contact_s: float | None) -> list[str]:
     """Return the last two periods of slowing in words, and the number of earlier periods."""
     texts = [f"{len(slowings) - 2} earlier"] if len(slowings) > 2 else []
-    for each in slowings[-2:]:
-        until = "the last step before contact" if each.end_s == last_before_contact_s else f"{each.end_s:+.2f} s"
-        if each.sudden:
-            how = f"lost within {each.end_s - each.start_s:.2f} s, faster than tyres brake: as in an impact"
+    for period in slowings[-2:]:
+        until = "the last step before contact" if period.end_s == last_before_contact_s else f"{period.end_s:+.2f} s"
+        if period.sudden:
+            how = f"lost within {period.end_s - period.start_s:.2f} s, faster than tyres brake: as in an impact"
         else:
-            how = f"hardest half second {each.hardest_mps2:.1f}, mean {each.mean_mps2:.1f} m/s\u00b2"
+            how = f"hardest half second {period.hardest_mps2:.1f}, mean {period.mean_mps2:.1f} m/s\u00b2"
         texts.append(
-            f"from {each.start_s:+.2f} s to {until}: {each.from_mps:.1f} to {each.to_mps:.1f} m/s, {how}".replace(
+            f"from {period.start_s:+.2f} s to {until}: {period.from_mps:.1f} to {period.to_mps:.1f} m/s, {how}".replace(
                 "-", "\u2212"
             )
         )
@@ -105,17 +105,17 @@ def _brake_lights_text(case: Case, actor_id: str) -> str:
     moment = case.finding.moment_ns
     states = [
         (t_ns, light)
-        for who, t_ns, light in zip(
+        for row_actor_id, t_ns, light in zip(
             *(case.drive.trace.tables["actor_state"][name].to_pylist() for name in ("actor_id", "t_ns", "brake_light")),
             strict=True,
         )
-        if who == actor_id and moment - SECONDS_BEFORE_MOMENT * 10**9 <= t_ns <= moment
+        if row_actor_id == actor_id and moment - SECONDS_BEFORE_MOMENT * 10**9 <= t_ns <= moment
     ]
-    known = [(t_ns, light) for t_ns, light in states if light is not None]
-    if not known:
+    known_states = [(t_ns, light) for t_ns, light in states if light is not None]
+    if not known_states:
         return "not recorded"
-    on = [t_ns for t_ns, light in known if light != "off"]
-    partly = "" if len(known) == len(states) else " (not known at every step)"
+    on = [t_ns for t_ns, light in known_states if light != "off"]
+    partly = "" if len(known_states) == len(states) else " (not known at every step)"
     if not on:
         return f"off throughout{partly}"
     return f"on from {(on[0] - moment) / 1e9:+.2f} s, at {len(on)} of {len(states)} steps{partly}".replace(
@@ -128,19 +128,19 @@ def _lane_text(case: Case, party_no: int, step_no: int | None) -> str:
 
     `step_no`: None, if that moment was not examined. The words also say when the party left its lane.
     """
-    judged = (case.ego_rows, case.other_party)[party_no]
-    if step_no is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
+    party_rows = (case.ego_rows, case.other_party)[party_no]
+    if step_no is None or not isinstance(party_rows, EgoRows) or not party_rows.steps.num_rows:
         return "not examined"
     t_ns = case.ego_rows.steps["t_ns"][step_no].as_py()
-    i = int(np.searchsorted(judged.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1
+    i = int(np.searchsorted(party_rows.steps["t_ns"].to_numpy(), t_ns, side="right")) - 1
     if i < 0:
         return "not known"
-    step = judged.steps.slice(i, 1).to_pylist()[0]
-    said: str = _LANE_TEXTS.get(step["with_traffic"], "lane not known")
+    step = party_rows.steps.slice(i, 1).to_pylist()[0]
+    text: str = _LANE_TEXTS.get(step["with_traffic"], "lane not known")
     if step["out_since_ns"] is not None:
-        said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.drive_start_ns)}"
-        said += " and is not completely back" if step["with_traffic"] else ""
-    return said
+        text += f"; left its lane at {seconds(step['out_since_ns'], case.finding.drive_start_ns)}"
+        text += " and is not completely back" if step["with_traffic"] else ""
+    return text
 
 
 def overtaking_text(case: Case, step_no: int | None) -> str:
@@ -150,16 +150,16 @@ def overtaking_text(case: Case, step_no: int | None) -> str:
     t_ns, row = case.ego_rows.steps["t_ns"][step_no].as_py(), case.finding.row
     passed = sorted(
         {
-            each["vbp_id"]
-            for each in case.result.overtakes.to_pylist()
-            if (each["drive_id"], each["ego_id"]) == (row["drive_id"], row["ego_id"])
-            and each["t0_ns"] <= t_ns <= each["t_end_ns"]
+            overtake["vbp_id"]
+            for overtake in case.result.overtakes.to_pylist()
+            if (overtake["drive_id"], overtake["ego_id"]) == (row["drive_id"], row["ego_id"])
+            and overtake["t0_ns"] <= t_ns <= overtake["t_end_ns"]
         }
     )
     against = case.ego_rows.steps["with_traffic"][step_no].as_py() is False
-    classes = {each["actor_id"]: each["actor_class"] for each in case.drive.trace.tables["actor"].to_pylist()}
-    named = [f"{(classes.get(who) or 'vehicle').replace('_', ' ')} {who}" for who in passed]
-    return f"A was overtaking {' and '.join(named)}{', in the oncoming lane' if against else ''}" if passed else ""
+    classes = {actor["actor_id"]: actor["actor_class"] for actor in case.drive.trace.tables["actor"].to_pylist()}
+    vehicles = [f"{(classes.get(actor_id) or 'vehicle').replace('_', ' ')} {actor_id}" for actor_id in passed]
+    return f"A was overtaking {' and '.join(vehicles)}{', in the oncoming lane' if against else ''}" if passed else ""
 
 
 def sheet_title(case: Case, motion: MotionOfParties, step_no: int | None, *, is_only_possible: bool) -> str:
@@ -189,9 +189,9 @@ def other_actor_texts(plan: Mapping[str, Any], scene: Row) -> list[str]:
     """Return in words the other actors in the plan view: kind, size, speed, and distance from A."""
     actors = {actor["actor_id"]: actor for actor in scene["actors"]}
     ego = shapely.polygons(box_corners_m(plan["ego"]))
-    told = []
-    for who in [text["actor"] for text in plan["texts"] if text["kind"] == "other"]:
-        about = actors[who]
+    texts = []
+    for actor_id in [text["actor"] for text in plan["texts"] if text["kind"] == "other"]:
+        about = actors[actor_id]
         size = " x ".join("?" if about[side] is None else f"{about[side]:.2f}" for side in ("length_m", "width_m"))
         mps = about["speed_mps"]
         moves = (
@@ -203,16 +203,16 @@ def other_actor_texts(plan: Mapping[str, Any], scene: Row) -> list[str]:
         )
         apart = float(shapely.distance(ego, shapely.polygons(box_corners_m(about))))
         kind = (about["actor_class"] or "kind not recorded").replace("_", " ")
-        told.append(f"{who}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
-    more = [f"{len(told) - _MOST_LISTED_OTHER_ACTORS} more"] if len(told) > _MOST_LISTED_OTHER_ACTORS else []
-    return told[:_MOST_LISTED_OTHER_ACTORS] + more
+        texts.append(f"{actor_id}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
+    more = [f"{len(texts) - _MOST_LISTED_OTHER_ACTORS} more"] if len(texts) > _MOST_LISTED_OTHER_ACTORS else []
+    return texts[:_MOST_LISTED_OTHER_ACTORS] + more
 
 
 def relative_speed_text(relative_mps: float, closing_mps: float | None) -> str:
     """Return the relative speed of both parties in words, and the closing speed of the box centres if it differs."""
     if math.isnan(relative_mps):
         return "relative speed not known"
-    said = f"relative speed {speed_text(relative_mps)}"
+    text = f"relative speed {speed_text(relative_mps)}"
     if closing_mps is None or are_speeds_nearly_equal(relative_mps, closing_mps):
-        return said
-    return f"{said}; the box centres {'move apart' if closing_mps < 0 else 'approach'} at {abs(closing_mps):.1f} m/s"
+        return text
+    return f"{text}; the box centres {'move apart' if closing_mps < 0 else 'approach'} at {abs(closing_mps):.1f} m/s"

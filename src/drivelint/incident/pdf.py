@@ -27,13 +27,13 @@ class PdfError(DriveLintError):
 
 def find_browser() -> str:
     """Return the path of an installed browser that can print a PDF. Errors: `UsageError` if there is none."""
-    found = next((path for name in _BROWSER_COMMANDS if (path := shutil.which(name))), None)
-    if found is None:
+    browser = next((path for name in _BROWSER_COMMANDS if (path := shutil.which(name))), None)
+    if browser is None:
         raise UsageError(
             "--pdf needs Chromium to print the PDF, and none is installed: install chromium (or Google Chrome), or print the HTML page "
             "from any browser on A4"
         )
-    return found
+    return browser
 
 
 def pdf_of_page(html: bytes, browser: str) -> bytes:

@@ -52,8 +52,10 @@ def place_at_moment(case: Case) -> Place:
     lat = lon = None
     if case.drive.geo is not None:
         ((lon, lat),) = case.drive.geo.longitude_latitude(np.array([[at["x_m"], at["y_m"]]])).tolist()
-    known = lat is not None and np.isfinite([lat, lon]).all()
-    return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
+    is_known = lat is not None and np.isfinite([lat, lon]).all()
+    return Place(
+        moment_ns, lat if is_known else None, lon if is_known else None, at["x_m"], at["y_m"], at["lanelet_id"]
+    )
 
 
 def doubtful_at_sea_text(where: Place, source: str) -> str:
@@ -71,11 +73,11 @@ def geo_source(case: Case) -> str:
 
 def weather_and_light_text(drive: Row) -> str:
     """Return weather and light in words, also which of them is not known."""
-    known = {each["condition"]: each["value"] for each in drive["conditions"]}
-    told = [f"{name} {known[name]}" for name in _SURROUNDING_CONDITIONS if name in known]
-    lost = [name for name in _SURROUNDING_CONDITIONS if name not in known]
-    parts = [", ".join(told)] if told else []
-    return "; ".join([*parts, f"{' and '.join(lost)} not known"] if lost else parts).capitalize()
+    values = {condition["condition"]: condition["value"] for condition in drive["conditions"]}
+    known_texts = [f"{name} {values[name]}" for name in _SURROUNDING_CONDITIONS if name in values]
+    missing_names = [name for name in _SURROUNDING_CONDITIONS if name not in values]
+    parts = [", ".join(known_texts)] if known_texts else []
+    return "; ".join([*parts, f"{' and '.join(missing_names)} not known"] if missing_names else parts).capitalize()
 
 
 def simulator_text(drive: Row) -> str:
@@ -87,13 +89,13 @@ def simulator_text(drive: Row) -> str:
 def coordinates_source_text(case: Case) -> str:
     """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
-    said = "the recording's coordinates"
+    text = "the recording's coordinates"
     if CLIP_CHECK_ID in checks:
-        said = "the clip's coordinates"  # a clip contains the coordinates that were judged
+        text = "the clip's coordinates"  # a clip contains the coordinates that were judged
     elif TURNED_FRAME_CHECK in checks:
-        said += " with the sign of y changed, as its frame is left-handed"
+        text += " with the sign of y changed, as its frame is left-handed"
     dx, dy = _map_offset_m(case)
-    return f"{said}{text_with_minus_signs(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
+    return f"{text}{text_with_minus_signs(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else text
 
 
 def driving_side_text(drive: Row) -> str:

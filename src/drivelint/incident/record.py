@@ -54,15 +54,21 @@ def data_elements_by_presence(
     `tables`: the tables of `schemas/model.sql`; `drive_row`: the drive's row, with columns of `data_log`; `actor_id`: the first party.
     """
     checks = set(tables["quality"]["check_id"].to_pylist())
-    found = []
+    lists = []
     for name, about in _read_data_elements_file().source.items():
-        told = DataElementsByPresence(about.title, [], [], [])
-        for element in (each for each in _read_data_elements_file().element if each.source == name):
-            held = any(_has_data_at(place, tables, drive_row, actor_id) for place in element.held_by)
-            kind = told.absent if not held else told.derived if element.derived_by in checks else told.present
+        elements = DataElementsByPresence(about.title, [], [], [])
+        for element in (entry for entry in _read_data_elements_file().element if entry.source == name):
+            is_held = any(_has_data_at(place, tables, drive_row, actor_id) for place in element.held_by)
+            kind = (
+                elements.absent
+                if not is_held
+                else elements.derived
+                if element.derived_by in checks
+                else elements.present
+            )
             kind.append(element.name)
-        found.append(told)
-    return found
+        lists.append(elements)
+    return lists
 
 
 def _has_data_at(data_place: str, tables: Mapping[str, pa.Table], drive_row: Mapping[str, Any], actor_id: str) -> bool:
@@ -76,5 +82,5 @@ def _has_data_at(data_place: str, tables: Mapping[str, pa.Table], drive_row: Map
     if table == "data_log":
         return drive_row.get(column) is not None
     rows = tables[table]
-    mine = rows.filter(pc.equal(rows["actor_id"], actor_id))
-    return bool(mine.num_rows > mine[column].null_count)
+    actor_rows = rows.filter(pc.equal(rows["actor_id"], actor_id))
+    return bool(actor_rows.num_rows > actor_rows[column].null_count)

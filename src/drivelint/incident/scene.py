@@ -34,21 +34,23 @@ def scene_at(scene: Row, actor_states: pa.Table, t_ns: int) -> Row:
     """
     if scene["t_ns"] == t_ns:
         return scene
-    who, times = actor_states["actor_id"].to_numpy(zero_copy_only=False), actor_states["t_ns"].to_numpy()
+    actor_ids, times = actor_states["actor_id"].to_numpy(zero_copy_only=False), actor_states["t_ns"].to_numpy()
     columns = {name: floats(actor_states[name]) for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps")}
     actors: list[dict[str, Any]] = []
     for actor in scene["actors"]:
-        mine = np.flatnonzero((who == actor["actor_id"]) & np.isfinite(columns["x_m"]) & np.isfinite(columns["y_m"]))
-        mine = mine[np.argsort(times[mine], kind="stable")]
-        t = times[mine]
+        samples = np.flatnonzero(
+            (actor_ids == actor["actor_id"]) & np.isfinite(columns["x_m"]) & np.isfinite(columns["y_m"])
+        )
+        samples = samples[np.argsort(times[samples], kind="stable")]
+        t = times[samples]
         if not len(t) or not t[0] <= t_ns <= t[-1] or np.abs(t - t_ns).min() > _LONGEST_TIME_TO_SAMPLE_NS:
             continue
-        nearest = mine[np.abs(t - t_ns).argmin()]
+        nearest = samples[np.abs(t - t_ns).argmin()]
         yaw, speed = columns["yaw_rad"][nearest], np.hypot(columns["vx_mps"][nearest], columns["vy_mps"][nearest])
         actors.append(
             {
                 **actor,
-                **{name: float(np.interp(t_ns, t, columns[name][mine])) for name in ("x_m", "y_m")},
+                **{name: float(np.interp(t_ns, t, columns[name][samples])) for name in ("x_m", "y_m")},
                 "yaw_rad": float(yaw) if np.isfinite(yaw) else actor["yaw_rad"],
                 "speed_mps": float(speed) if np.isfinite(speed) else None,
             }
@@ -69,11 +71,17 @@ def plan_view_at_moment(case: Case) -> dict[str, Any]:
     spaces = _rows_at_moment(case.result.spaces, at) if _DANGER_SPACE_TAG in finding.rule["tags"] else []
     plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
     tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
-    drawn = other_actor_texts(plan, drawn_scene)
+    actor_texts = other_actor_texts(plan, drawn_scene)
     letters = dict(zip(finding.parties, PARTY_LETTERS, strict=False))
     plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
     plan["font"] = f"{_LABEL_HEIGHT_SHARE_OF_PLAN_VIEW * float(plan['height']):.1f}"
-    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
+    return {
+        "plan": plan,
+        "tiles": tiles,
+        "shapes": actor_shapes([drawn_scene]),
+        "drawn": actor_texts,
+        "drawn_at": drawn_at,
+    }
 
 
 def _rows_at_moment(table: pa.Table, drive_ego_and_time: tuple[str, str, int]) -> list[dict[str, Any]]:

@@ -96,7 +96,7 @@ def template_values(case: Case) -> dict[str, Any]:
     offset_s = (finding.moment_ns - finding.drive_start_ns) / 1e9
     rows = rows_of_seconds_table(motion, before_s)
     span, where = _conduct_span_ns(finding), place_at_moment(case)
-    told = {
+    values = {
         "row": row,
         "rule": finding.rule,
         "drive": finding.drive,
@@ -150,7 +150,7 @@ def template_values(case: Case) -> dict[str, Any]:
         "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.drive_start_ns),
         "strips": charts_over_time(motion, _party_names(finding), *gap_and_finding_courses(case), finding.moment_ns),
-        "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
+        "seconds": [{**second, "drive_s": offset_s + float(motion.t[second["i"]])} for second in rows],
         "step_s": motion.step_s,
         "span": {
             "of": span,
@@ -176,13 +176,13 @@ def template_values(case: Case) -> dict[str, Any]:
         "rules_sha256": _rules_sha256(case.result),
         "n_rules": case.result.rules.num_rows,
     }
-    told["title"] = sheet_title(case, motion, at, is_only_possible=told["sure"]["title"] == POSSIBLE)
-    told["crowded"] = is_first_page_full(told)
-    taken = (
-        characters_lost_to_hash_lines([f"{told['log']} {'0' * 64}", *told["commands"], *told["cut_from"]])
-        + _CHARACTERS_RESERVED_FOR_MISSING_RECORDS * told["crowded"]
+    values["title"] = sheet_title(case, motion, at, is_only_possible=values["sure"]["title"] == POSSIBLE)
+    values["crowded"] = is_first_page_full(values)
+    used_characters = (
+        characters_lost_to_hash_lines([f"{values['log']} {'0' * 64}", *values["commands"], *values["cut_from"]])
+        + _CHARACTERS_RESERVED_FOR_MISSING_RECORDS * values["crowded"]
     )
-    return {**told, **_conduct_values(case, span, MOST_ROWS_OF_SECONDS_TABLE - len(rows), taken)}
+    return {**values, **_conduct_values(case, span, MOST_ROWS_OF_SECONDS_TABLE - len(rows), used_characters)}
 
 
 def number_or_dash(value: float | None, digits: int = 2) -> str:
@@ -210,13 +210,13 @@ def _finding_sentence(finding: NamedFinding) -> str:
 
 
 def _party_names(finding: NamedFinding) -> list[str]:
-    return [f"{letter} ({who})" for letter, who in zip(PARTY_LETTERS, finding.parties, strict=False)]
+    return [f"{letter} ({actor_id})" for letter, actor_id in zip(PARTY_LETTERS, finding.parties, strict=False)]
 
 
 def _log_name_of_clip(file_name: str) -> str | None:
     """Return the name of the log that a clip was cut from, taken from the clip's name; None if the file is no clip."""
-    named = _CLIP_NAME_PATTERN.match(file_name.partition(".")[0])
-    return named[1] if named else None
+    match = _CLIP_NAME_PATTERN.match(file_name.partition(".")[0])
+    return match[1] if match else None
 
 
 def _signed_number_text(s: float) -> str:
@@ -225,10 +225,10 @@ def _signed_number_text(s: float) -> str:
 
 def _least_gap_text(motion: MotionOfParties, finding: NamedFinding) -> str | None:
     """Return the least gap between the two parties in the whole drive, in words; None if no gap is known."""
-    known = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
-    if not known:
+    known_steps = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
+    if not known_steps:
         return None
-    i = min(known, key=lambda i: (motion.gap[i], i))
+    i = min(known_steps, key=lambda i: (motion.gap[i], i))
     at = (float(motion.t[i]) * 1e9 + finding.moment_ns - finding.drive_start_ns) / 1e9
     deep = f"boxes overlap by {-motion.gap[i]:.2f} m" if motion.gap[i] < 0 else f"{motion.gap[i]:.2f} m"
     return f"{deep} at {at:.2f} s"
@@ -236,18 +236,18 @@ def _least_gap_text(motion: MotionOfParties, finding: NamedFinding) -> str | Non
 
 def _other_contacts_of_ego(case: Case) -> list[Row]:
     """Return the contacts of A in this drive, except the sheet's finding, in time order."""
-    mine = case.finding.row
+    own_row = case.finding.row
     tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT_TAG in rule["tags"]}
-    found = [
+    contacts = [
         row
         for row in case.result.findings.to_pylist()
-        if row["drive_id"] == mine["drive_id"]
+        if row["drive_id"] == own_row["drive_id"]
         and row["rule_id"] in tagged
-        and row["finding_id"] != mine["finding_id"]
+        and row["finding_id"] != own_row["finding_id"]
         and row["object_id"] is not None
-        and mine["ego_id"] in {row["ego_id"], row["object_id"]}
+        and own_row["ego_id"] in {row["ego_id"], row["object_id"]}
     ]
-    return sorted(found, key=lambda row: (row["t_start_ns"], row["rule_id"], row["ego_id"]))
+    return sorted(contacts, key=lambda row: (row["t_start_ns"], row["rule_id"], row["ego_id"]))
 
 
 def _is_between_parties(case: Case, row: Row) -> bool:
@@ -258,16 +258,16 @@ def _is_between_parties(case: Case, row: Row) -> bool:
 def _other_contact_texts(case: Case) -> list[str]:
     """Return in words the contacts of the two parties that other rules found, and the contacts of A with other actors."""
     titles = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist()}
-    told = []
+    texts = []
     for row in _other_contacts_of_ego(case):
         sure = f"; {certainty_text(row)}" if row["n_copies"] is not None else ""
         at = seconds(row["t_start_ns"], case.finding.drive_start_ns)
-        both = _is_between_parties(case, row)
-        if not both or row["rule_id"] != case.finding.row["rule_id"]:
-            other = row["object_id"] if row["ego_id"] == case.finding.row["ego_id"] else row["ego_id"]
-            whom, by = "" if both else f" with {other}", titles[row["rule_id"]]
-            told.append(f"at {at}{whom}, by the rule \u201c{by}\u201d (finding {row['finding_id'][:8]}{sure})")
-    return told
+        is_of_parties = _is_between_parties(case, row)
+        if not is_of_parties or row["rule_id"] != case.finding.row["rule_id"]:
+            other_id = row["object_id"] if row["ego_id"] == case.finding.row["ego_id"] else row["ego_id"]
+            other_words, by = "" if is_of_parties else f" with {other_id}", titles[row["rule_id"]]
+            texts.append(f"at {at}{other_words}, by the rule \u201c{by}\u201d (finding {row['finding_id'][:8]}{sure})")
+    return texts
 
 
 def _warning_texts(case: Case) -> list[str]:
@@ -277,7 +277,7 @@ def _warning_texts(case: Case) -> list[str]:
 def _fitted_log_warnings(case: Case) -> FittedTexts:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
-    shortened = [shorten(told, _MOST_WARNING_CHARACTERS, placeholder=rest) for told in _warning_texts(case)]
+    shortened = [shorten(warning, _MOST_WARNING_CHARACTERS, placeholder=rest) for warning in _warning_texts(case)]
     return first_fitted_texts(shortened, _MOST_WARNING_CHARACTERS)
 
 
@@ -318,32 +318,35 @@ def _conduct_values(
         row["finding_id"]: {name: row[name] for name in ("n_copies", "n_stays")}
         for row in case.result.findings.to_pylist()
     }
-    found: list[dict[str, Any]] = []
-    for letter, who, judged in zip(PARTY_LETTERS, finding.parties, (case.ego_rows, case.other_party), strict=False):
-        told: dict[str, Any] = {
+    parties: list[dict[str, Any]] = []
+    for letter, actor, rows in zip(PARTY_LETTERS, finding.parties, (case.ego_rows, case.other_party), strict=False):
+        party: dict[str, Any] = {
             "letter": letter,
-            "id": who,
+            "id": actor,
             "ego": letter == PARTY_LETTERS[0],
-            "in_report": who in {ego["ego_id"] for ego in finding.drive["exposure"]},
-            "not_judged": judged if isinstance(judged, str) else "",
+            "in_report": actor in {ego["ego_id"] for ego in finding.drive["exposure"]},
+            "not_judged": rows if isinstance(rows, str) else "",
         }
-        if judged is not None and not isinstance(judged, str):
-            findings = [{**row, **copies.get(row["finding_id"], {})} for row in judged.findings]
-            told |= conduct_texts_and_counts(
-                judged.verdicts, findings, rules, span_ns, finding.drive_start_ns, is_about_contact=finding.is_contact
+        if rows is not None and not isinstance(rows, str):
+            findings = [{**row, **copies.get(row["finding_id"], {})} for row in rows.findings]
+            party |= conduct_texts_and_counts(
+                rows.verdicts, findings, rules, span_ns, finding.drive_start_ns, is_about_contact=finding.is_contact
             )
-        found.append(told)
-    of_both = remove_and_return_shared_reasons(found)
-    others = [(told["id"], told["letter"]) for told in found][::-1] if len(found) > 1 else [None]
-    found = [conduct_with_party_name(told, told["letter"], other) for told, other in zip(found, others, strict=True)]
+        parties.append(party)
+    of_both = remove_and_return_shared_reasons(parties)
+    other_parties = [(party["id"], party["letter"]) for party in parties][::-1] if len(parties) > 1 else [None]
+    parties = [
+        conduct_with_party_name(party, party["letter"], other_party)
+        for party, other_party in zip(parties, other_parties, strict=True)
+    ]
     of_both = conduct_with_party_name(of_both, "either")
-    beside = sum(len(line) for told in found for line in told.get("beside", ()))
-    of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
+    beside = sum(len(line) for party in parties for line in party.get("beside", ()))
+    of_both |= {"in_report": any(party["in_report"] for party in parties), "id": parties[-1]["id"]}
     lines = used_characters + beside + SHARED_HEADING_CHARACTERS * bool(of_both["reasons"])
     lines += _CHARACTERS_RESERVED_PER_NOTE * (bool(_warning_texts(case)) + bool(_clip_source_texts(case)))
-    further = fit_conduct_lists_and_return_further_pages([*found, of_both], unused_rows_of_seconds, lines)
-    has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
-    return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
+    further = fit_conduct_lists_and_return_further_pages([*parties, of_both], unused_rows_of_seconds, lines)
+    has_kept = any(party[name].texts for party in parties for name in ("kept", "excused") if name in party)
+    return {"conduct": parties, "of_both": of_both, "further": further, "has_kept": has_kept}
 
 
 def _certainty_values(case: Case) -> dict[str, Any]:
@@ -352,21 +355,19 @@ def _certainty_values(case: Case) -> dict[str, Any]:
     `title`: for a contact, the certainty of the surest finding of the same contact, else `word`; `by`: that finding's rule, in words.
     """
     row, rules = case.finding.row, {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
-    told = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
-    if case.finding.is_contact and told["word"] == POSSIBLE:
-        for other in _other_contacts_of_ego(case):
+    values = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
+    if case.finding.is_contact and values["word"] == POSSIBLE:
+        for contact in _other_contacts_of_ego(case):
             same = (
-                _is_between_parties(case, other)
-                and other["t_start_ns"] <= row["t_end_ns"]
-                and other["t_end_ns"] >= row["t_start_ns"]
+                _is_between_parties(case, contact)
+                and contact["t_start_ns"] <= row["t_end_ns"]
+                and contact["t_end_ns"] >= row["t_start_ns"]
             )
-            if same and certainty(other) == SURE:
-                told |= {
-                    "title": SURE,
-                    "by": f"\u201c{rules[other['rule_id']]['title']}\u201d ({certainty_text(other)})",
-                }
+            if same and certainty(contact) == SURE:
+                values["title"] = SURE
+                values["by"] = f"\u201c{rules[contact['rule_id']]['title']}\u201d ({certainty_text(contact)})"
                 break
-    return told
+    return values
 
 
 def _contact_by_speed_change_sentence(case: Case, motion: MotionOfParties) -> str:
@@ -378,19 +379,18 @@ def _contact_by_speed_change_sentence(case: Case, motion: MotionOfParties) -> st
     beside_s = 1.5 * motion.step_s  # include one step before and one step after
     near = (motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)
     gaps, times = motion.gap[near], motion.t[near]
-    known = gaps[~np.isnan(gaps)]
-    if known.size and known.min() <= 0:
+    known_gaps = gaps[~np.isnan(gaps)]
+    if known_gaps.size and known_gaps.min() <= 0:
         return ""
-    told = "no gap is known"
-    if known.size:
+    gap_text = "no gap is known"
+    if known_gaps.size:
         at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.drive_start_ns) / 1e9
-        told = f"least gap {known.min():.2f} m, at {at_s:.2f} s"
-    boxes = (
-        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "whether the boxes touch is not known"
-    )
-    assumed = any(size_source_text(case.drive.trace, who) for who in case.finding.parties)
+        gap_text = f"least gap {known_gaps.min():.2f} m, at {at_s:.2f} s"
+    are_apart = 0 < known_gaps.size == gaps.size
+    boxes = "the boxes do not touch at that time" if are_apart else "whether the boxes touch is not known"
+    assumed = any(size_source_text(case.drive.trace, actor_id) for actor_id in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
-    return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
+    return f"It is based on a sudden change of speed: {boxes} ({gap_text}{sizes})."
 
 
 def _rules_sha256(result: Result) -> str:

@@ -81,8 +81,8 @@ def measured_and_required_text(row: Row, rule: Row) -> str:
 
 def required_value_text(row: Row, rule: Row) -> str:
     """Return the required value as text, and the tolerance that it includes, if any."""
-    said, given = amount_text(row["required"], row["unit"]), tolerance(row, rule)
-    return said if given is None else f"{said}, including {amount_text(given, row['unit'])} tolerance"
+    text, row_tolerance = amount_text(row["required"], row["unit"]), tolerance(row, rule)
+    return text if row_tolerance is None else f"{text}, including {amount_text(row_tolerance, row['unit'])} tolerance"
 
 
 def profile_text(name: str | None) -> str:
@@ -102,10 +102,10 @@ def box_overlap_text(row: Row, rule: Row) -> str:
     """Return the overlap of the boxes in the recording and its copies in words; '' if the finding is not about overlapping boxes."""
     if CONTACT_TAG not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
-    said = f"the boxes overlap by {amount_text(-row['observed'], 'm')} in the recording"
+    text = f"the boxes overlap by {amount_text(-row['observed'], 'm')} in the recording"
     if row["n_copies"] is not None and row["n_stays"] < row["n_copies"]:
-        said += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with assumed errors they do not"
-    return said
+        text += f"; in {row['n_copies'] - row['n_stays']} of {row['n_copies']} copies with assumed errors they do not"
+    return text
 
 
 def story_sentence(
@@ -128,15 +128,15 @@ def story_sentence(
         return ""
     parts = [manoeuvre_text, _lane_departure_text(motion, step_no, moment_from_start_s)]
     until_s = float(motion.t[step_no])
-    steady = [not found and is_slowing_known(motion, party, until_s) for party, found in enumerate(slowings)]
+    steady = [not periods and is_slowing_known(motion, party, until_s) for party, periods in enumerate(slowings)]
     if all(steady):
         parts.append("neither slowed by 1 m/s\u00b2 or more before")
     else:
-        for party, (letter, found, still) in enumerate(zip("AB", slowings, steady, strict=True)):
-            if found:
-                from_s, to_s = (each + moment_from_start_s for each in (found[-1].start_s, found[-1].end_s))
-                how = "lost speed faster than tyres brake" if found[-1].sudden else "slowed last"
-                since_s = until_s - found[-1].end_s
+        for party, (letter, periods, still) in enumerate(zip("AB", slowings, steady, strict=True)):
+            if periods:
+                from_s, to_s = (time_s + moment_from_start_s for time_s in (periods[-1].start_s, periods[-1].end_s))
+                how = "lost speed faster than tyres brake" if periods[-1].sudden else "slowed last"
+                since_s = until_s - periods[-1].end_s
                 then = (
                     f", and not in the {since_s:.1f} s after"
                     if since_s >= 1 and is_slowing_known(motion, party, until_s)
@@ -146,8 +146,8 @@ def story_sentence(
             elif still:
                 parts.append(f"{letter} did not slow by 1 m/s\u00b2 or more")
     parts += [
-        _party_and_speed_text(letter, kind, float(each[step_no]))
-        for letter, kind, each in zip("AB", party_kinds, motion.speed, strict=True)
+        _party_and_speed_text(letter, kind, float(speeds[step_no]))
+        for letter, kind, speeds in zip("AB", party_kinds, motion.speed, strict=True)
     ]
     how = _directions_text(motion, step_no)
     relative = float(motion.relative[step_no])
@@ -183,10 +183,12 @@ def collision_title(
         directions = _SIDE_BY_SIDE  # the sentence below the title has the rest
     how = f" {directions}" if directions else ""
     is_named = all(party_kinds) and len(set(party_kinds)) > 1
-    who = " and ".join(
+    subject = " and ".join(
         f"{kind} {letter}" if is_named else letter for letter, kind in zip("AB", party_kinds, strict=True)
     )
-    parts = [f"{who[:1].upper()}{who[1:]} {'may have ' if is_only_possible else ''}collided{how} at {time_text}"]
+    parts = [
+        f"{subject[:1].upper()}{subject[1:]} {'may have ' if is_only_possible else ''}collided{how} at {time_text}"
+    ]
     relative = math.nan if step_no is None else float(motion.relative[step_no])
     if closing_mps is not None and closing_mps > 0 and are_speeds_nearly_equal(relative, closing_mps):
         parts.append(f"closing at {closing_mps:.1f} m/s")
@@ -200,10 +202,10 @@ def collision_title(
 def _party_and_speed_text(letter: str, kind: str | None, mps: float) -> str:
     """Return a party's letter with its class and speed, if known; '' if neither is known."""
     article = "an" if kind and kind[0] in "aeiou" else "a"
-    named = [letter, f"{article} {kind}"] if kind else [letter]
-    known = [] if math.isnan(mps) else [f"at {mps:.1f} m/s"]
-    parts = [*named, *known]
-    return ", ".join(parts) if kind else " ".join(parts) if known else ""
+    name_parts = [letter, f"{article} {kind}"] if kind else [letter]
+    speed_parts = [] if math.isnan(mps) else [f"at {mps:.1f} m/s"]
+    parts = [*name_parts, *speed_parts]
+    return ", ".join(parts) if kind else " ".join(parts) if speed_parts else ""
 
 
 def _directions_text(motion: MotionOfParties, step_no: int) -> str:
@@ -215,8 +217,8 @@ def _directions_text(motion: MotionOfParties, step_no: int) -> str:
         return f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
     if turn_rad >= _HEAD_ON_RAD and not motion.is_aside[step_no]:
         return "head-on"
-    said = "in the same direction" if turn_rad <= _ALONG_RAD else "in opposite directions"
-    return f"{_SIDE_BY_SIDE} {said}" if motion.is_alongside[step_no] else said
+    text = "in the same direction" if turn_rad <= _ALONG_RAD else "in opposite directions"
+    return f"{_SIDE_BY_SIDE} {text}" if motion.is_alongside[step_no] else text
 
 
 def _lane_departure_text(motion: MotionOfParties, step_no: int, moment_from_start_s: float) -> str:

@@ -75,11 +75,11 @@ class McapFrameSource(MessageFrameSource):
         """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
         frame_places: list[FramePlace] = []
         for no, summary in enumerate(self._summaries):
-            mine = [number for number, channel in summary.channels.items() if channel.topic == topic]
+            numbers = [number for number, channel in summary.channels.items() if channel.topic == topic]
             for chunk, (_, first_ns, last_ns) in summary.chunks.items():
                 if last_ns < since_ns or first_ns > until_ns:
                     continue
-                for number in mine:
+                for number in numbers:
                     for log_ns, at in self._index(no, chunk, number):
                         if since_ns <= log_ns <= until_ns:
                             frame_places.append(FramePlace(log_ns, no, number, chunk, at))

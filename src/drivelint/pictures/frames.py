@@ -200,8 +200,8 @@ def _cdr_frame(kind: str, message: _CdrReader) -> Frame:
 
 
 def _foxglove_frame(kind: str, fields: dict[str, Any]) -> Frame:
-    said = fields.get("timestamp") or {}
-    seconds, part = said.get("sec", said.get("seconds", 0)), said.get("nsec", said.get("nanos", 0))
+    timestamp = fields.get("timestamp") or {}
+    seconds, part = timestamp.get("sec", timestamp.get("seconds", 0)), timestamp.get("nsec", timestamp.get("nanos", 0))
     stamp_ns = int(seconds) * 10**9 + int(part) or None
     data = fields["data"]
     data = base64.b64decode(data) if isinstance(data, str) else data

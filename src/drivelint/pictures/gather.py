@@ -73,7 +73,7 @@ class PictureTaker:
     @property
     def topics_by_drive(self) -> dict[str, tuple[str, ...]]:
         """drive_id -> topics of its cameras; only drives with cameras."""
-        return {drive_id: each.topics for drive_id, each in self._drives.items()}
+        return {drive_id: drive.topics for drive_id, drive in self._drives.items()}
 
     def take_pictures(self, result: Result) -> tuple[pa.Table, list[PictureTrouble]]:
         """Return the table `picture` of a result, sorted, and why pictures are missing, each reason once per camera."""
@@ -86,8 +86,8 @@ class PictureTaker:
                 with drive.open_log() as log:
                     jpeg_of = _cached_jpeg_function(log)
                     for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
-                        asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
-                        rows += _picture_rows(log, drive, asked, jpeg_of, troubles)
+                        moment_shots = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
+                        rows += _picture_rows(log, drive, moment_shots, jpeg_of, troubles)
             except (OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
                 troubles[PictureTrouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
         if not rows:

@@ -47,8 +47,8 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
     Its sides are divided by a whole number, which takes a third of the time of any other scale.
     """
     try:
-        opened = _pillow_image(image)
-        whole = opened if opened.mode == "RGB" else opened.convert("RGB")
+        pillow_image = _pillow_image(image)
+        whole = pillow_image if pillow_image.mode == "RGB" else pillow_image.convert("RGB")
         small = whole.reduce(times) if (times := _shrink_factor(whole)) > 1 else whole
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
@@ -94,7 +94,7 @@ def _pillow_image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
 
 def _shrink_factor(image: Image.Image) -> int:
     """Return the whole number by which the sides of an image are divided."""
-    return max(1, *(-(-side // most) for side, most in zip(image.size, LARGEST_WIDTH_AND_HEIGHT_PX, strict=True)))
+    return max(1, *(-(-side // limit) for side, limit in zip(image.size, LARGEST_WIDTH_AND_HEIGHT_PX, strict=True)))
 
 
 def _open_image(image: EncodedImage) -> Image.Image:
@@ -134,7 +134,7 @@ def _image_of_pixels(image: RawImage) -> Image.Image:
 def _rgb_of_colour_filter(pixels: NDArray[np.uint8], pattern: str) -> NDArray[np.uint8]:
     even = pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
     quarters = {i: even[i // 2 :: 2, i % 2 :: 2].astype(np.uint16) for i in range(4)}
-    of = {colour: [quarters[i] for i, each in enumerate(pattern) if each == colour] for colour in "rgb"}
+    of = {colour: [quarters[i] for i, letter in enumerate(pattern) if letter == colour] for colour in "rgb"}
     return np.stack([(sum(of[colour]) // len(of[colour])) for colour in "rgb"], axis=2).astype(np.uint8)
 
 

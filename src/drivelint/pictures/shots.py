@@ -57,9 +57,9 @@ def shots_of_moments(moments: Sequence[tuple[str, int]], topics_by_drive: Mappin
 
 def rows_of_planned_shots(pictures: pa.Table, shots: Sequence[Shot]) -> pa.Table:
     """Return the rows of the table `picture` whose shots are planned."""
-    wanted = set(shots)
+    planned_keys = set(shots)
     keys = zip(*(pictures[name].to_pylist() for name in Shot._fields), strict=True)
-    return pictures.filter(pa.array([Shot(*key) in wanted for key in keys], pa.bool_()))
+    return pictures.filter(pa.array([Shot(*key) in planned_keys for key in keys], pa.bool_()))
 
 
 def _moments_worst_first(result: Result, topics_by_drive: Mapping[str, Sequence[str]]) -> list[tuple[str, int]]:
@@ -69,9 +69,11 @@ def _moments_worst_first(result: Result, topics_by_drive: Mapping[str, Sequence[
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     near = result.verdicts.filter(pc.equal(result.verdicts["near_miss"], True))
     of_drives = pa.array(sorted(topics_by_drive), pa.string())
-    found: dict[tuple[str, int], None] = {}
+    moments: dict[tuple[str, int], None] = {}
     for rows in (result.findings, near):
-        mine = rows.filter(pc.and_(pc.is_in(rows["drive_id"], value_set=of_drives), pc.is_valid(rows["t_worst_ns"])))
-        ordered = worst_first(mine, rules)
-        found |= dict.fromkeys(zip(ordered["drive_id"].to_pylist(), ordered["t_worst_ns"].to_pylist(), strict=True))
-    return list(found)
+        camera_rows = rows.filter(
+            pc.and_(pc.is_in(rows["drive_id"], value_set=of_drives), pc.is_valid(rows["t_worst_ns"]))
+        )
+        ordered = worst_first(camera_rows, rules)
+        moments |= dict.fromkeys(zip(ordered["drive_id"].to_pylist(), ordered["t_worst_ns"].to_pylist(), strict=True))
+    return list(moments)

@@ -31,7 +31,9 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
     of_camera: dict[str, str] = {}
     for path in files:
         index = SqliteFile(path).index()
-        topics = [each.topic for each in index.channels.values() if is_camera(each, index.schemas[each.schema_id])]
+        topics = [
+            channel.topic for channel in index.channels.values() if is_camera(channel, index.schemas[channel.schema_id])
+        ]
         for topic in sorted(topics, key=lambda topic: (topic.endswith("/compressed"), topic)):
             of_camera[camera_name(topic)] = topic
     return tuple(sorted(of_camera.values(), key=camera_sort_key))
@@ -62,7 +64,7 @@ class SqliteFrameSource(MessageFrameSource):
         """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
         places: list[FramePlace] = []
         for no, index in enumerate(self._indexes):
-            number = next((each.id for each in index.channels.values() if each.topic == topic), None)
+            number = next((channel.id for channel in index.channels.values() if channel.topic == topic), None)
             if number is None:
                 continue
             query = (

@@ -24,9 +24,9 @@ def video_image(log: MessageSource, topic: str, place: FramePlace) -> Image:
     """Return a frame of a video, decoded from the last key frame up to it. Errors: `FrameError`."""
     av = _pyav()
     waiting: list[VideoFrame] = []
-    for each in reversed(log.frame_places(topic, place.log_ns - _KEY_FRAME_SEARCH_NS, place.log_ns)):
-        image = log.frame(each).image
-        if each > place or not isinstance(image, VideoFrame):
+    for frame_place in reversed(log.frame_places(topic, place.log_ns - _KEY_FRAME_SEARCH_NS, place.log_ns)):
+        image = log.frame(frame_place).image
+        if frame_place > place or not isinstance(image, VideoFrame):
             continue
         waiting.append(image)
         if is_known_key_frame(image):
@@ -81,7 +81,7 @@ def _last_image(av: Any, codec: str, data: list[bytes]) -> Image | None:
     context = av.CodecContext.create(codec, "r")
     image: Image | None = None
     try:
-        for packet in (*(av.Packet(each) for each in data), None):
+        for packet in (*(av.Packet(frame_data) for frame_data in data), None):
             for frame in context.decode(packet):
                 image = frame.to_image()
     except (av.error.FFmpegError, ValueError) as error:

@@ -87,16 +87,16 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
     for rule in rules:
         for name in cited_clauses(rule):
             citing.setdefault(name, []).append(rule)
-    known = {name for clause in table for name in clause.cited_names}
-    strange = sorted(citing.keys() - known)
+    known_names = {name for clause in table for name in clause.cited_names}
+    strange = sorted(citing.keys() - known_names)
     if strange:
         raise RuleError(f"clauses.toml: {citing[strange[0]][0].id} cites {strange[0]}, which has no entry")
     rows = []
     for clause in table:
-        mine = {rule.id: rule for name in clause.cited_names for rule in citing.get(name, ())}
-        covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
-        drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
-        if not mine and not clause.why:
+        citing_rules = {rule.id: rule for name in clause.cited_names for rule in citing.get(name, ())}
+        covered = tuple(sorted(i for i, rule in citing_rules.items() if rule.status == "stable"))
+        drafted = tuple(sorted(i for i, rule in citing_rules.items() if rule.status == "draft"))
+        if not citing_rules and not clause.why:
             raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it has no reason")
         rows.append(ClauseCoverage(clause, covered, drafted))
     return rows
@@ -106,13 +106,13 @@ def render_markdown(rules: Iterable[Rule], folder: Path) -> str:
     """Return the page for these rules; `folder` contains their packs, with their `clauses.toml` files."""
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = group_rows(rules, lambda rule: rule.pack)
-    known = {pack: read_clauses(folder / pack) for pack in packs}
+    clauses_by_pack = {pack: read_clauses(folder / pack) for pack in packs}
     return text_template(__file__, "catalogue.md.j2", finalize=_table_cell_without_markup).render(
         rules=rules,
         packs=packs,
-        clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
+        clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in clauses_by_pack.items()},
         applies=_restrictions_text,
-        asking=lambda asked, reads: _text_on_rules_that_use(rules, asked, reads),
+        asking=lambda requirements, reads: _text_on_rules_that_use(rules, requirements, reads),
         column_values={
             "actor_class": ACTOR_CLASSES,
             "indicator": INDICATORS,
@@ -152,14 +152,14 @@ def _text_on_rules_that_use(rules: Iterable[Rule], requirements: Sequence[str], 
     A rule uses a requirement if it requires it, is restricted by it, or names it in its SQL. If `reads` is not empty, a name in the SQL
     counts only if the rule reads one of these tables.
     """
-    named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in requirements))
+    pattern = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in requirements))
     ids = [
         f"`{rule.id}`"
         for rule in rules
         if not {*rule.requires, *rule.applies.restricted_conditions}.isdisjoint(requirements)
         or (
             (not reads or not {*rule.reads}.isdisjoint(reads))
-            and named.search(_COMMENT.sub("", "\n".join(rule.sections.values())))
+            and pattern.search(_COMMENT.sub("", "\n".join(rule.sections.values())))
         )
     ]
     return f"{len(ids)} rules" if len(ids) > _MAX_LISTED_RULES else ", ".join(ids) or "no rule"
@@ -167,9 +167,9 @@ def _text_on_rules_that_use(rules: Iterable[Rule], requirements: Sequence[str], 
 
 def _restrictions_text(rule: Rule) -> str:
     conditions = {"law": rule.law, **msgspec.structs.asdict(rule.applies)}
-    said = [
+    restrictions = [
         f"{name} {' or '.join(map(str, value)) if isinstance(value, tuple) else value}"
         for name, value in conditions.items()
         if value not in {None, ()}
     ]
-    return ", ".join(said)
+    return ", ".join(restrictions)

@@ -123,7 +123,7 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     assumed = sorted(
         {check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION_CHECK}
     )
-    given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMPTION_CHECKS})
+    assumptions = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMPTION_CHECKS})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
     parts = [f"parts lost in {name_list(lossy, _MAX_LISTED_NAMES)}"] if lossy else []
     absent = [(drive["drive_id"], words) for drive in drives for words in ego_absence_texts(drive)]
@@ -135,7 +135,7 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     parts += assumed
     if not parts:
         parts = [_completeness_words(drives)] if drives else ["none"]
-    parts += given
+    parts += assumptions
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
         parts.append(
@@ -147,11 +147,11 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
 
 def _first_place_words(warned: AbstractSet[tuple[str, str]]) -> str:
     """Return the message of the gravest warning about rows of a file, and where the other warnings are; '' for none."""
-    placed = sorted(((_PLACED_CHECKS.index(check), text) for check, text in warned if check in _PLACED_CHECKS))
-    if not placed:
+    placed_warnings = sorted(((_PLACED_CHECKS.index(check), text) for check, text in warned if check in _PLACED_CHECKS))
+    if not placed_warnings:
         return ""
     more = "; drivelint inspect shows the others" if len(warned) > 1 else ""
-    return f": {placed[0][1]}{more}"
+    return f": {placed_warnings[0][1]}{more}"
 
 
 def _completeness_words(drives: Sequence[Row]) -> str:
@@ -164,21 +164,21 @@ def _completeness_words(drives: Sequence[Row]) -> str:
 def _words_on_identical_logs(drives: Sequence[Row]) -> list[str]:
     """Return in words which logs are copies of another log under another name; the findings of copies are counted too."""
     same = counts.group_rows(drives, lambda drive: drive["sha256"]).values()
-    copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]
+    copied = [(name["drive_id"], first["drive_id"]) for first, *copies in same for name in copies]
     if not copied:
         return []
-    told = [f"{copy} of {first}" for copy, first in sorted(copied)]
-    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {name_list(told, _MAX_LISTED_NAMES)}"]
+    texts = [f"{copy} of {first}" for copy, first in sorted(copied)]
+    return [f"{'a copy' if len(texts) == 1 else 'copies'}, counted again: {name_list(texts, _MAX_LISTED_NAMES)}"]
 
 
 def _notes_on_unrecorded_signals(result: Result) -> list[InputNote]:
     """Return the note on signals that few logs contain and these logs lack, with the number of rules that need them."""
     rows = counts.verdicts_lacking_signal(result.verdicts).select(["reason_code", "rule_id", *_EGO_COLUMNS]).to_pylist()
-    needed = [
+    signals = [
         f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
         for name, n, where in _lacking_signals(result, rows)
     ]
-    return [InputNote("not recorded", name_list(needed), is_warning=True)] if rows else []
+    return [InputNote("not recorded", name_list(signals), is_warning=True)] if rows else []
 
 
 def _notes_on_parked_egos(result: Result) -> list[InputNote]:
@@ -194,8 +194,8 @@ def _notes_on_parked_egos(result: Result) -> list[InputNote]:
 
 def _lacking_signals(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
     """Return the signals that verdicts lack, the signal that most rules need first: name, number of rules, and for which egos."""
-    missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
-    order = sorted(missing.items(), key=lambda item: (-n_rules(item[1]), -len(item[1]), item[0]))
+    rows_by_signal = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
+    order = sorted(rows_by_signal.items(), key=lambda item: (-n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO_COLUMNS)}
     return [(name, n_rules(verdicts), _for_egos_words(verdicts, egos)) for name, verdicts in order]
 
@@ -212,8 +212,8 @@ def _not_judged_note(result: Result, n_drives: int) -> InputNote:
             for name, n, where in _lacking_signals(result, signals)
         ]
         parts.append(name_list(without))
-    if others := len(rows) - len(signals):
-        parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
+    if n_others := len(rows) - len(signals):
+        parts.append(f"{n_others} {'other ' if signals else ''}{'verdict' if n_others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
 
 
@@ -240,8 +240,8 @@ def undecided_verdicts_by_cause(result: Result) -> list[list[Row]]:
     """
     columns = ["verdict", "reason_code", "cause_code", "rule_id", "drive_id", "reason"]
     rows = counts.undecided_verdicts(result.verdicts).select(columns).to_pylist()
-    others = [row for row in rows if not row["reason_code"].startswith("missing_")]
-    by_code = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
+    other_rows = [row for row in rows if not row["reason_code"].startswith("missing_")]
+    by_code = counts.group_rows(other_rows, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
     groups: dict[tuple[str, str], list[Row]] = {}
     for group in sorted(by_code.values(), key=lambda group: len(group[0]["reason"])):
         verdict, text = group[0]["verdict"], group[0]["reason"].rstrip(".").casefold()

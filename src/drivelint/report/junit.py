@@ -70,12 +70,12 @@ def render(result: Result) -> bytes:
     ]
     if too_little := why_too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
-    if gone := gating_unfixed_findings(result):
-        events = counts.group_rows(gone, lambda entry: entry.event_key)
+    if unfixed_findings := gating_unfixed_findings(result):
+        events = counts.group_rows(unfixed_findings, lambda entry: entry.event_key)
         suites.append(("baseline", list(map(_unfixed_case, events.values()))))
-    for name, mine in suites:
-        counted = _append_suite_and_return_counts(root, name, mine)
-        totals = {name: n + counted[name] for name, n in totals.items()}
+    for name, suite_cases in suites:
+        suite_counts = _append_suite_and_return_counts(root, name, suite_cases)
+        totals = {name: n + suite_counts[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
     return xml_bytes(root)
@@ -117,12 +117,12 @@ class _CaseLines(NamedTuple):
 
 def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     """Return the test cases of each drive by `drive_id`, in the order of the verdict table."""
-    told: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines(*([] for _ in _CaseLines._fields)))
+    lines_by_case: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines(*([] for _ in _CaseLines._fields)))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
     def add_failure(row: Row, text: str, counted_as: Row | None = None) -> None:
         reason = descriptions.why_not_gating(result, row, rules.get(row["rule_id"]))
-        lines = told[_case_key(row)]
+        lines = lines_by_case[_case_key(row)]
         if reason:
             lines.not_gating.append(f"does not gate ({reason}): {text}")
         elif counted_as is not None:
@@ -136,7 +136,7 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     starts = result.start_times
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
     for row in _distinct_reasons(result.verdicts):
-        lines = told[_case_key(row)]  # creates the case, in the order of the verdicts
+        lines = lines_by_case[_case_key(row)]  # creates the case, in the order of the verdicts
         kind = "lacking_signal" if row["lacks_signal"] else of_verdict.get(row["verdict"])
         if kind:
             getattr(lines, kind).append(with_count(row["reason"], row["count_all"]))
@@ -150,7 +150,7 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
         add_failure(row, with_count(row["reason"], row["count_all"]))
     required = set(_test_case_keys(gating_unknowns(result)))
     cases: dict[str, list[Case]] = defaultdict(list)
-    for key, lines in told.items():
+    for key, lines in lines_by_case.items():
         cases[key[0]].append(_test_case(key, lines, is_required=key in required))
     return cases
 
@@ -176,14 +176,14 @@ def _test_case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
     not_applicable = [f"not applicable: {x}" for x in [*lines.lacking_signal, *lines.not_applicable]]
     if is_required:
         unknown += [f"not recorded: {x}" for x in lines.lacking_signal]
-    others = [*lines.counted_elsewhere, *lines.not_gating]
+    other_lines = [*lines.counted_elsewhere, *lines.not_gating]
     if lines.erred:
-        return Case(name, "error", "error", lines.erred, [*lines.stopping, *others, *unknown])
+        return Case(name, "error", "error", lines.erred, [*lines.stopping, *other_lines, *unknown])
     if lines.stopping:
-        return Case(name, "failure", "fail", lines.stopping, [*others, *unknown])
+        return Case(name, "failure", "fail", lines.stopping, [*other_lines, *unknown])
     if unknown and is_required:
-        return Case(name, "error", "unknown", unknown, others)
-    if others or unknown:
+        return Case(name, "error", "unknown", unknown, other_lines)
+    if other_lines or unknown:
         kind = "counted_elsewhere" if lines.counted_elsewhere else "unknown" if unknown else "does_not_gate"
         return Case(name, "skipped", kind, [*lines.counted_elsewhere, *unknown, *lines.not_gating])
     if lines.passed:
@@ -194,9 +194,9 @@ def _test_case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
 def _append_suite_and_return_counts(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
     """Append a drive's suite to the document and return its counts."""
     outcomes = Counter(case.outcome for case in cases)
-    counted = {"tests": len(cases), "failures": outcomes["failure"], "errors": outcomes["error"]}
-    counted["skipped"] = outcomes["skipped"]
-    suite = add_element(root, "testsuite", name=drive_id, **{name: str(n) for name, n in counted.items()})
+    suite_counts = {"tests": len(cases), "failures": outcomes["failure"], "errors": outcomes["error"]}
+    suite_counts["skipped"] = outcomes["skipped"]
+    suite = add_element(root, "testsuite", name=drive_id, **{name: str(n) for name, n in suite_counts.items()})
     for case in cases:
         element = add_element(suite, "testcase", name=case.name, classname=drive_id)
         if case.outcome:
@@ -205,7 +205,7 @@ def _append_suite_and_return_counts(root: etree._Element, drive_id: str, cases: 
             detail.text = replace_non_xml("\n".join(lines))
         if case.notes:
             add_element(element, "system-out").text = replace_non_xml("\n".join(_shown_lines(case.notes)))
-    return counted
+    return suite_counts
 
 
 def _shown_lines(lines: Sequence[str]) -> list[str]:

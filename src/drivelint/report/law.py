@@ -33,7 +33,12 @@ def law_words(result: Result) -> str:
 
 def _words_on_unrequested_packs(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
     """Yield in words the packs that implement the law of a drive's nation, if no rule of the run implements it."""
-    nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
+    nations = {
+        condition["value"]
+        for drive in drives
+        for condition in drive["conditions"]
+        if condition["condition"] == "nation"
+    }
     lacking = sorted(nation for nation in nations if not any(nation in related_values(law) for law in laws))
     for nation in lacking:
         rules = load_rules().values()
@@ -47,13 +52,13 @@ def _words_on_unrequested_packs(laws: list[tuple[str, ...]], drives: list[Row]) 
 def _words_on_application_of_law(law: tuple[str, ...], drives: list[Row]) -> str:
     """Return in words whether this law was applied in the drives, and the source of each drive's nation."""
     applied = related_values(law)
-    counted: Counter[str] = Counter()
+    n_drives: Counter[str] = Counter()
     for drive in drives:
-        given = next((said for said in drive["conditions"] if said["condition"] == "nation"), None)
-        if given is None:
-            counted["assumed, as the nation is not known"] += 1
+        nation = next((condition for condition in drive["conditions"] if condition["condition"] == "nation"), None)
+        if nation is None:
+            n_drives["assumed, as the nation is not known"] += 1
         else:
-            how = "applied" if given["value"] in applied else "not applied"
-            counted[f"{how}: nation {given['value']} by {_NATION_SOURCE_WORDS[given['source']]}"] += 1
-    each = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(counted.items())]
-    return f"of {name_list(list(law))} {'; '.join(each)}"
+            how = "applied" if nation["value"] in applied else "not applied"
+            n_drives[f"{how}: nation {nation['value']} by {_NATION_SOURCE_WORDS[nation['source']]}"] += 1
+    texts = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(n_drives.items())]
+    return f"of {name_list(list(law))} {'; '.join(texts)}"

@@ -44,8 +44,8 @@ class LogNotes:
 
     def add_refused_logs(self, refused_logs: Iterable[RefusedLog]) -> None:
         """Add a note on each refused log; if the run has a single log, its refusal is the error of the run instead."""
-        for each in refused_logs if self._n_logs > 1 else ():
-            self.add(LogNote(each.path, f"not judged: {each.error}"))
+        for log in refused_logs if self._n_logs > 1 else ():
+            self.add(LogNote(log.path, f"not judged: {log.error}"))
 
 
 def note_on_repeated_log(path: Path, drive_id: str) -> LogNote:
@@ -55,9 +55,9 @@ def note_on_repeated_log(path: Path, drive_id: str) -> LogNote:
 
 def notes_without_repeats(notes: Iterable[LogNote]) -> Iterator[LogNote]:
     """Yield the notes, but of several notes with `once` and the same text only the first."""
-    told: set[str] = set()
+    texts: set[str] = set()
     for note in notes:
-        if not (note.once and note.text in told):
+        if not (note.once and note.text in texts):
             yield note
         if note.once:
-            told.add(note.text)
+            texts.add(note.text)

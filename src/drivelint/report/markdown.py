@@ -68,7 +68,7 @@ def render(result: Result, base_url: str | None = None) -> bytes:
             )
         ),
         counted=lambda items: one_finding_per_event_and_status(gate, [row for row, _ in items]),
-        rows_of_findings=lambda items, told: counts.extra_rows_sentence([row for row, _ in items], told),
+        rows_of_findings=lambda items, events: counts.extra_rows_sentence([row for row, _ in items], events),
         rules=rules,
         starts=result.start_times,
         drives={row["drive_id"]: row for row in result.drives.to_pylist()},
@@ -79,15 +79,15 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         open=_reasons_of_unknowns_and_errors(result),
     )
     room = list(accumulate(len(part) + 2 for part in parts))
-    kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
-    if len(kept) < len(parts):
-        kept.append(f"{plural(len(parts) - len(kept), 'part')} left out to keep this comment short.")
-    kept.append(
+    shown_parts = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
+    if len(shown_parts) < len(parts):
+        shown_parts.append(f"{plural(len(parts) - len(shown_parts), 'part')} left out to keep this comment short.")
+    shown_parts.append(
         f"[The complete report]({target})"
         if target
         else "The complete report is report.html in the folder of the results."
     )
-    return ("\n\n".join(kept) + "\n").encode("utf-8", "replace")
+    return ("\n\n".join(shown_parts) + "\n").encode("utf-8", "replace")
 
 
 def render_difference(
@@ -152,7 +152,7 @@ def markdown_code(text: str) -> str:
 def _reasons_of_unknowns_and_errors(result: Result) -> list[dict[str, Any]]:
     """Return the reasons of unknown verdicts and errors, with their rules and numbers of verdicts, the most frequent first."""
     rows = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "rule_id"])
-    found = [
+    entries = [
         {
             "verdict": verdict,
             "reason": reason,
@@ -161,7 +161,7 @@ def _reasons_of_unknowns_and_errors(result: Result) -> list[dict[str, Any]]:
         }
         for (verdict, reason), alike in counts.group_rows(rows, lambda row: (row["verdict"], row["reason"])).items()
     ]
-    return sorted(found, key=lambda row: (row["verdict"], -row["n"], row["reason"]))
+    return sorted(entries, key=lambda row: (row["verdict"], -row["n"], row["reason"]))
 
 
 def _short_reason(text: str) -> str:

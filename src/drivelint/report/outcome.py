@@ -131,8 +131,8 @@ class _UndecidedRules(NamedTuple):
     @property
     def headline_words(self) -> str:
         """The part of the outcome's sentence about undecided rules."""
-        which = "the rule that may apply" if self.of == 1 else f"{self.n} of the {self.of} rules that may apply"
-        return f"{which} could not be judged{', counted for each drive and ego' if self.several else ''}"
+        subject = "the rule that may apply" if self.of == 1 else f"{self.n} of the {self.of} rules that may apply"
+        return f"{subject} could not be judged{', counted for each drive and ego' if self.several else ''}"
 
 
 class RuleCounts(NamedTuple):
@@ -157,16 +157,16 @@ def headline(result: Result) -> Headline:
     rows = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
     left = [row for row in rows if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
     label = _outcome_label(result, bool(rows))
-    told = counts.verdict_counts(result.verdicts)
+    verdict_counts = counts.verdict_counts(result.verdicts)
     lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
-    whole = not told["unknown"] + told["error"] + lacking and not result.interrupted
+    whole = not verdict_counts["unknown"] + verdict_counts["error"] + lacking and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_less_sentence(before)
     whole = whole and not less
     kind = "unknown" if less else _HEADLINE_KIND_OF_LABEL.get(label, "unknown")
     if not rows:
-        parts = [HeadlinePart(_no_findings_words(result, told, label, is_all_judged=whole))]
+        parts = [HeadlinePart(_no_findings_words(result, verdict_counts, label, is_all_judged=whole))]
     else:
         parts = [
             HeadlinePart(_findings_words(result, rows)),
@@ -184,8 +184,8 @@ def headline(result: Result) -> Headline:
     if n := n_rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
-        missing = next((words for check, words in _NO_MAP_WORDS.items() if check in checks), "no map was given")
-        parts.append(HeadlinePart(f"{missing}: {need} one (--map)", "warning"))
+        cause = next((words for check, words in _NO_MAP_WORDS.items() if check in checks), "no map was given")
+        parts.append(HeadlinePart(f"{cause}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
 
 
@@ -198,9 +198,9 @@ def events_by_status(gate: Gate | None, rows: Sequence[Row]) -> list[Event]:
     """Return the events with the findings of `one_finding_per_event_and_status`, in the order of these findings."""
     of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
     members: dict[int, list[Row]] = {}
-    for mine in of_standing.values():
-        for row, place in zip(mine, counts.representative_indices(mine), strict=True):
-            members.setdefault(id(mine[place]), []).append(row)
+    for group in of_standing.values():
+        for row, place in zip(group, counts.representative_indices(group), strict=True):
+            members.setdefault(id(group[place]), []).append(row)
     return [Event(row, tuple(members[id(row)])) for row in rows if id(row) in members]
 
 
@@ -213,16 +213,16 @@ def rule_counts(result: Result) -> RuleCounts:
     """Return the numbers of rules by how they were judged."""
     by_rule = counts.verdict_counts_by(result.verdicts, "rule_id")
     rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
-    judged = [n for n in rules if n["pass"] + n["fail"]]
-    others = [n for n in rules if not n["pass"] + n["fail"]]
-    undecided = [n for n in others if n["unknown"] + n["error"]]
+    judged_rules = [n for n in rules if n["pass"] + n["fail"]]
+    other_rules = [n for n in rules if not n["pass"] + n["fail"]]
+    undecided = [n for n in other_rules if n["unknown"] + n["error"]]
     never = sum(not n["not_applicable"] for n in undecided)
-    partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
+    partly = sum(bool(n["unknown"] + n["error"]) for n in judged_rules)
     lacking = set(counts.verdicts_lacking_signal(result.verdicts)["rule_id"].to_pylist())
     names = result.rules["rule_id"].to_pylist()
     idle = [name for name in names if not sum(by_rule[name][v] for v in ("pass", "fail", "unknown", "error"))]
     unrecorded = len(lacking.intersection(idle))
-    return RuleCounts(len(judged), partly, never, len(idle) - unrecorded, len(undecided) - never, unrecorded)
+    return RuleCounts(len(judged_rules), partly, never, len(idle) - unrecorded, len(undecided) - never, unrecorded)
 
 
 def _outcome_label(result: Result, has_findings: bool) -> str:
@@ -230,18 +230,22 @@ def _outcome_label(result: Result, has_findings: bool) -> str:
 
     The word is not PASS if there are findings, even if none gates, nor if fewer rules were decided than left undecided.
     """
-    code, told = exit_status(result).code, counts.verdict_counts(result.verdicts)
+    code, verdict_counts = exit_status(result).code, counts.verdict_counts(result.verdicts)
     if code != ExitCode.OK and not (
         code == ExitCode.NOT_JUDGED and is_first_not_judged_reason_too_little_decided(result)
     ):
         return LABEL_OF_EXIT_CODE.get(code, "?")
-    if code == ExitCode.NOT_JUDGED and told["pass"] + told["fail"]:
+    if code == ExitCode.NOT_JUDGED and verdict_counts["pass"] + verdict_counts["fail"]:
         return _TOO_LITTLE_JUDGED
     if has_findings:
         return _FINDINGS_LABEL
-    if not told["pass"] + told["fail"]:
+    if not verdict_counts["pass"] + verdict_counts["fail"]:
         lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
-        return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
+        return (
+            "UNKNOWN"
+            if verdict_counts["unknown"] + verdict_counts["error"] + lacking or not verdict_counts["not_applicable"]
+            else _NOT_APPLICABLE
+        )
     return _MOSTLY_UNKNOWN if _count_undecided_rules(result).are_most else LABEL_OF_EXIT_CODE[code]
 
 
@@ -252,8 +256,8 @@ def _count_undecided_rules(result: Result) -> _UndecidedRules:
 
 
 def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label: str, *, is_all_judged: bool) -> str:
-    judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
-    if not judged or not result.verdicts.num_rows:
+    has_judged_drive = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
+    if not has_judged_drive or not result.verdicts.num_rows:
         return "nothing was judged"
     if (
         not verdict_counts["pass"] + verdict_counts["fail"]
@@ -276,23 +280,23 @@ def _findings_words(result: Result, rows: Sequence[Row]) -> str:
     if gate is None:
         return f"{counts.severity_counts_text(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
     groups = counts.group_rows(rows, lambda row: gate.status_at_gate(row["finding_id"]))
-    said = []
-    for name, mine in groups.items():
+    parts = []
+    for name, group in groups.items():
         if name not in LET_THROUGH_WORDS:
-            n, gating = len(mine), len(counts.one_finding_per_event(gating_findings(result).to_pylist()))
+            n, gating = len(group), len(counts.one_finding_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
             label = {"new": "new", "open": "not waived" if gate.waivers else _GATING_WITHOUT_BASELINE_OR_WAIVERS_LABEL}[
                 name
             ]
-            said.append(f"{n} {label} ({counts.severity_counts_text(mine)}{some})")
-    said += [
+            parts.append(f"{n} {label} ({counts.severity_counts_text(group)}{some})")
+    parts += [
         f"{len(groups[name])} {words} ({counts.severity_counts_text(groups[name])})"
         for name, words in LET_THROUGH_WORDS.items()
         if name in groups
     ]
     if gate.baseline is not None and "new" not in groups:
-        return f"no new finding; {', '.join(said)}{where}"
-    return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
+        return f"no new finding; {', '.join(parts)}{where}"
+    return f"{plural(len(rows), 'finding')}{where}: {', '.join(parts)}"
 
 
 def _known_but_worse_findings_parts(gate: Gate | None) -> list[HeadlinePart]:
@@ -313,10 +317,10 @@ def _contact_parts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]
     sure = [row for row in contacts if row["drive_id"] in touched]
     maybe = [row for row in contacts if row["drive_id"] not in touched]
     parts = []
-    for words, mine in (("CONTACT", sure), ("possible contact", maybe)):
-        if mine:
-            n = plural(len({row["drive_id"] for row in mine}), "drive")
-            parts.append(HeadlinePart(f"{words} in {n}{_contacts_at_gate_words(result.gate, mine)}", words.lower()))
+    for words, group in (("CONTACT", sure), ("possible contact", maybe)):
+        if group:
+            n = plural(len({row["drive_id"] for row in group}), "drive")
+            parts.append(HeadlinePart(f"{words} in {n}{_contacts_at_gate_words(result.gate, group)}", words.lower()))
     return parts
 
 

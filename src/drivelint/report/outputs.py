@@ -84,23 +84,25 @@ def write(
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
     contents[REPORT_FILES["junit"]] = junit.render(result)
     contents |= {
-        name: render(result) for name, render in (REPORT_FORMATS[each] for each in reports) if name not in contents
+        name: render(result) for name, render in (REPORT_FORMATS[report] for report in reports) if name not in contents
     }
     if result.gate is not None:
         contents[GATE_FILE] = gate.render(result.gate)
     if result.run_options is not None:
         contents[RUN_FILE] = request.render(result.run_options, out)
     contents[MARK_FILE] = summary.render(result)
-    moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
+    moved_files = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
     if work is not None:
-        moved |= _result_files_in_work(work, result)
-    folder.replace_result(out, contents, moved, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
-    return tuple(sorted(moved))
+        moved_files |= _result_files_in_work(work, result)
+    folder.replace_result(out, contents, moved_files, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
+    return tuple(sorted(moved_files))
 
 
 def _result_files_in_work(work: Path, result: Result) -> dict[str, Path]:
     """Return the files in `work` that belong to the result, by name."""
-    judged = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
+    judged_ids = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
     files = [path for path in sorted(work.rglob("*")) if path.is_file() and not path.name.startswith(".")]
     # without annotated logs of drives that could not be judged completely
-    return {path.relative_to(work).as_posix(): path for path in files if path.suffix != ".mcap" or path.stem in judged}
+    return {
+        path.relative_to(work).as_posix(): path for path in files if path.suffix != ".mcap" or path.stem in judged_ids
+    }

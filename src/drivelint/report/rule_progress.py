@@ -36,7 +36,7 @@ class ReportingRuleLimits(RuleLimits):
         """Report the rule, then do as `RuleLimits.limit_statements`."""
         self._begun.add(rule_id)
         n = len(self._begun)
-        what = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"
-        self._progress.doing(what, self._n_drives * n / (self._n_rules + 1))
-        with super().limit_statements(con, rule_id, alone=alone) as held:
-            yield held
+        activity = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"
+        self._progress.doing(activity, self._n_drives * n / (self._n_rules + 1))
+        with super().limit_statements(con, rule_id, alone=alone) as running_rule:
+            yield running_rule

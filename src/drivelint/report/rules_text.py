@@ -79,10 +79,10 @@ def rule_details(rule: Rule) -> Group:
             facts.add_row(name, Text(value))
     parts: list[RenderableType] = [Text(f"{rule.id}: {one_line(rule.title)}", style="bold"), facts]
     if rule.params:
-        rows = [(name, str(each.default), each.unit, each.why, each.source) for name, each in rule.params.items()]
+        rows = [(name, str(param.default), param.unit, param.why, param.source) for name, param in rule.params.items()]
         parts.append(_table(("parameter", "default", "unit", "why", "source"), rows))
     if rule.reasons:
-        words = [(code, each.says, each.advice) for code, each in rule.reasons.items()]
+        words = [(code, reason.says, reason.advice) for code, reason in rule.reasons.items()]
         parts.append(_table(("reason", "says", "advice"), words))
     return Group(*parts)
 
@@ -94,9 +94,9 @@ def path_and_sql(rule: Rule) -> Text:
 
 def _restrictions_text(conditions: Conditions) -> str:
     """Return the conditions under which a rule applies, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
-    said = [f"{name} {' or '.join(words)}" for name, words in conditions.restricted_conditions.items()]
+    texts = [f"{name} {' or '.join(words)}" for name, words in conditions.restricted_conditions.items()]
     limits = {"limit_min_mps": conditions.limit_min_mps, "limit_max_mps": conditions.limit_max_mps}
-    return ", ".join([*said, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
+    return ", ".join([*texts, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
 
 
 def _duration_text(rule: Rule, key: str) -> str:

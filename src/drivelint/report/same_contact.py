@@ -23,11 +23,11 @@ def findings_of_same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> d
     met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     return {
         row["finding_id"]: [
-            other
-            for other in of_both
-            if other["rule_id"] != row["rule_id"]
-            and other["t_start_ns"] <= row["t_end_ns"] + SAME_CONTACT_GAP_NS
-            and row["t_start_ns"] <= other["t_end_ns"] + SAME_CONTACT_GAP_NS
+            contact
+            for contact in of_both
+            if contact["rule_id"] != row["rule_id"]
+            and contact["t_start_ns"] <= row["t_end_ns"] + SAME_CONTACT_GAP_NS
+            and row["t_start_ns"] <= contact["t_end_ns"] + SAME_CONTACT_GAP_NS
         ]
         for of_both in met.values()
         for row in of_both
@@ -37,10 +37,10 @@ def findings_of_same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> d
 def other_certainty_words(finding: Row, other_findings: Iterable[Row]) -> str:
     """Return in words the certainty of another finding of the same contact, if it differs from this finding's; else ''."""
     own_certainty = certainty(finding)
-    for other in other_findings:
-        of = f"by {other['rule_id']}, in {other['n_stays']} of {other['n_copies']} copies"
-        if (own_certainty, certainty(other)) == (POSSIBLE, SURE):
+    for other_finding in other_findings:
+        of = f"by {other_finding['rule_id']}, in {other_finding['n_stays']} of {other_finding['n_copies']} copies"
+        if (own_certainty, certainty(other_finding)) == (POSSIBLE, SURE):
             return f"the contact itself is sure {of}"
-        if (own_certainty, certainty(other)) == (SURE, POSSIBLE):
+        if (own_certainty, certainty(other_finding)) == (SURE, POSSIBLE):
             return f"the same contact is only possible {of}"
     return ""

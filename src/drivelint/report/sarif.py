@@ -78,7 +78,7 @@ class _SarifRun:
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
         result, end = self._result, exit_status(self._result)
-        told = counts.verdict_counts_by(result.verdicts, "rule_id")
+        verdicts_by_rule = counts.verdict_counts_by(result.verdicts, "rule_id")
         total = counts.verdict_counts(result.verdicts)
         properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
         if result.gate is not None:
@@ -86,7 +86,7 @@ class _SarifRun:
         driver = {
             "name": "drivelint",
             "semanticVersion": __version__,
-            "rules": [_rule_descriptor(rule, told[rule["rule_id"]]) for rule in self._rules],
+            "rules": [_rule_descriptor(rule, verdicts_by_rule[rule["rule_id"]]) for rule in self._rules],
             "notifications": [
                 {"id": name, "shortDescription": {"text": text}} for name, text in _NOTIFICATION_KINDS.items()
             ],
@@ -111,24 +111,24 @@ class _SarifRun:
         drive, rule_index = self._drives[row["drive_id"]], self._rule_index[row["rule_id"]]
         rule, gate = self._rules[rule_index], self._result.gate
         start_ns = drive["t_start_ns"]
-        measured = "" if row["reason_measures"] else measured_values_text(row)
+        values_text = "" if row["reason_measures"] else measured_values_text(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
-        who = f"{ego_and_object_names(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
-        said = [
+        subject = f"{ego_and_object_names(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
+        parts = [
             f"{breach_title(rule)}: {row['reason']}",
-            measured,
-            who,
+            values_text,
+            subject,
             f"({doubt_words(row)})" if doubt_words(row) else "",
             f"({event.other_rows_words})" if event.other_rows else "",
         ]
-        found: dict[str, Any] = {
+        sarif_result: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
             "kind": "fail",
             "level": "note"
             if status_at_gate(gate, row["finding_id"]) in LET_THROUGH_WORDS
             else _level(row["severity"], rule["status"]),
-            "message": {"text": " ".join(part for part in said if part)},
+            "message": {"text": " ".join(part for part in parts if part)},
             "locations": [self._location(drive, row)],
             # code scanning of GitHub only reads primaryLocationLineHash: without it, all findings of a rule in a log are one alert
             "partialFingerprints": {"findingId/v1": event.id, "primaryLocationLineHash": event.id},
@@ -144,11 +144,11 @@ class _SarifRun:
                 **{name: row[name] for name in ("n_copies", "n_stays")},
                 "certainty": certainty(row),
                 "gates": row["finding_id"] in self._gating,
-                "findingIds": [each["finding_id"] for each in event.rows],
-                "profiles": sorted({each["profile"] for each in event.rows} - {None}),
+                "findingIds": [finding["finding_id"] for finding in event.rows],
+                "profiles": sorted({finding["profile"] for finding in event.rows} - {None}),
             },
         }
-        return found if gate is None else found | _gate_properties(gate, event)
+        return sarif_result if gate is None else sarif_result | _gate_properties(gate, event)
 
     def _log_uri(self, drive: Row) -> dict[str, str]:
         """Return the URI of a log: its path relative to the folder of the check, or its name if that path is not known."""
@@ -203,14 +203,14 @@ class _SarifRun:
 
 def _gate_properties(gate: Gate, event: Event) -> dict[str, Any]:
     """Return what the baseline and the waivers say about an event, as properties of a SARIF result."""
-    found: dict[str, Any] = {}
+    properties: dict[str, Any] = {}
     ids = [row["finding_id"] for row in event.rows]
     if gate.baseline is not None:
         entries = filter(None, map(gate.compared_finding, ids))
         states = {_BASELINE_STATES[entry.standing] for entry in entries} or {"new"}
-        found["baselineState"] = next(state for state in ("new", "updated", "unchanged") if state in states)
+        properties["baselineState"] = next(state for state in ("new", "updated", "unchanged") if state in states)
     if gate.waivers:  # SARIF: if some results are suppressed, the others have an empty list
-        found["suppressions"] = [
+        properties["suppressions"] = [
             {
                 "kind": "external",
                 "status": "accepted",
@@ -218,7 +218,7 @@ def _gate_properties(gate: Gate, event: Event) -> dict[str, Any]:
             }
             for waiver in dict.fromkeys(filter(None, map(gate.waiver, ids)))
         ]
-    return found
+    return properties
 
 
 def _relative_log_paths(result: Result) -> Mapping[str, str]:
@@ -252,14 +252,14 @@ def _rule_descriptor(rule: Row, verdict_counts: Mapping[str, int]) -> dict[str, 
 
 
 def _artifact(drive: Row, location: Mapping[str, str]) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    artifact: dict[str, Any] = {
         "location": dict(location),
         "roles": ["analysisTarget"],
         "properties": {"driveId": drive["drive_id"], "status": drive["status"], "map": drive["map_name"]},
     }
     if drive["sha256"] is not None:
-        found["hashes"] = {"sha-256": drive["sha256"]}
-    return found
+        artifact["hashes"] = {"sha-256": drive["sha256"]}
+    return artifact
 
 
 def _notification(kind: str, level: str, text: str, place: dict[str, Any] | None = None) -> dict[str, Any]:

@@ -60,8 +60,8 @@ def content(result: Result) -> dict[str, Any]:
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
         "events": {name: sum(row["severity"] == name for row in events) for name in counts.SEVERITIES},
         "packs": [
-            {"pack": pack, "verdicts": told}
-            for pack, told in counts.verdict_counts_by_pack(result.rules, result.verdicts).items()
+            {"pack": pack, "verdicts": verdict_counts}
+            for pack, verdict_counts in counts.verdict_counts_by_pack(result.rules, result.verdicts).items()
         ],
         "rules": _rows_with_counts(result, result.rules.select(_RULE_COLUMNS), near, events),
         "drives": _rows_with_counts(result, result.drives.select(_DRIVE_COLUMNS), near, events),

@@ -79,7 +79,7 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
 
 
 def _drives_table(result: Result, *, wide: bool) -> Table:
-    told = counts.verdict_counts_by(result.verdicts, "drive_id")
+    verdicts_by_drive = counts.verdict_counts_by(result.verdicts, "drive_id")
     rows = result.drives.to_pylist()
     title = "Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})"
     table = _empty_table(title, "bold", {"drive": 1})
@@ -90,12 +90,12 @@ def _drives_table(result: Result, *, wide: bool) -> Table:
             name.append(" (lossy)", style="yellow")
         duration = NO_VALUE if row["duration_s"] is None else f"{row['duration_s']:.1f} s"
         extent = [f"{row['km']:.2f}", duration] if wide else []
-        table.add_row(name, *extent, *_count_cells(told[row["drive_id"]]))
+        table.add_row(name, *extent, *_count_cells(verdicts_by_drive[row["drive_id"]]))
     return table
 
 
 def _rules_table(result: Result, *, wide: bool) -> Table:
-    told = counts.verdict_counts_by(result.verdicts, "rule_id")
+    verdicts_by_rule = counts.verdict_counts_by(result.verdicts, "rule_id")
     table = _empty_table("Rules", "bold", {"rule": 1})
     if wide:
         table.add_column("severity")
@@ -105,12 +105,12 @@ def _rules_table(result: Result, *, wide: bool) -> Table:
         if row["status"] != "stable":
             name.append(f" ({row['status']})", style="dim")
         severity = [Text(row["severity"], style=_STYLE_OF_SEVERITY[row["severity"]])] if wide else []
-        table.add_row(name, *severity, *_count_cells(told[row["rule_id"]]))
+        table.add_row(name, *severity, *_count_cells(verdicts_by_rule[row["rule_id"]]))
     table.add_section()
     packs = counts.verdict_counts_by_pack(result.rules, result.verdicts)
     for pack, sums in packs.items():  # verdicts of several packs are not added up
-        what = "all" if len(packs) == 1 else f"all of {pack}"
-        table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
+        label = "all" if len(packs) == 1 else f"all of {pack}"
+        table.add_row(Text(label, style="bold"), *([""] if wide else []), *_count_cells(sums))
     return table
 
 
@@ -139,11 +139,11 @@ def _finding_or_near_miss_table(
     if not rows.num_rows:
         return None
     is_of_findings = "finding_id" in rows.column_names
-    counted = one_finding_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
-    more = counts.extra_rows_sentence(rows.to_pylist(), counted) if is_of_findings else ""
-    cut = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
+    events = one_finding_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
+    more = counts.extra_rows_sentence(rows.to_pylist(), events) if is_of_findings else ""
+    limit_words = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
     table = _empty_table(
-        f"{title} ({len(counted)})\n{more}{cut}" if more else _title_with_count(title, rows.num_rows), style
+        f"{title} ({len(events)})\n{more}{limit_words}" if more else _title_with_count(title, rows.num_rows), style
     )
     table.show_header = wide
     _add_number_columns(table, ["time"])
@@ -174,15 +174,15 @@ def _finding_or_near_miss_table(
 
 def _unjudged_table(result: Result) -> Table | None:
     """Return a table of what could not be judged, with the reasons: drives, then verdicts that are unknown or errors."""
-    lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
+    drives = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
     rows = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "rule_id"])
     why = counts.group_rows(rows, lambda row: (row["verdict"], row["reason"]))
-    if not lost and not why:
+    if not drives and not why:
         return None
     table = _empty_table(
-        _title_with_count("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1}
+        _title_with_count("Could not be judged", len(drives) + len(why)), "yellow", {"what": 1, "why": 1}
     )
-    for row in lost[:MAX_ROWS]:
+    for row in drives[:MAX_ROWS]:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
     order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
     of_egos = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "ego_id"])
@@ -208,13 +208,13 @@ def _quality_table(result: Result) -> Table | None:
     """Return a table of the warnings and errors about the data quality of logs and maps."""
     checks = [(drive["drive_id"], check) for drive in result.drives.to_pylist() for check in drive["quality"]]
     worse = [(drive_id, check) for drive_id, check in checks if check["severity"] != "info"]
-    seen = counts.group_rows(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
-    if not seen:
+    groups = counts.group_rows(worse, lambda pair: tuple(pair[1][name] for name in ("severity", "check_id", "message")))
+    if not groups:
         return None
-    table = _empty_table(_title_with_count("Data quality", len(seen)), "yellow", {"check": 1, "message": 3})
-    for (severity, check_id, message), told in list(seen.items())[:MAX_ROWS]:
-        drives = {drive_id for drive_id, _ in told}
-        where = told[0][0] if len(drives) == 1 else f"{len(drives)} drives"
+    table = _empty_table(_title_with_count("Data quality", len(groups)), "yellow", {"check": 1, "message": 3})
+    for (severity, check_id, message), pairs in list(groups.items())[:MAX_ROWS]:
+        drives = {drive_id for drive_id, _ in pairs}
+        where = pairs[0][0] if len(drives) == 1 else f"{len(drives)} drives"
         table.add_row(Text(check_id, style=_STYLE_OF_SEVERITY[severity]), Text(f"{where}: {message}"))
     return table
 

@@ -77,12 +77,12 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     """
     rules = _rules_by_id(result)
     every = one_finding_per_event_and_status(result.gate, worst_first(result.findings, rules).to_pylist())
-    found = [row for row in every if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
-    drives = _drives_table(result, found, every, rules, width)
+    gating_findings = [row for row in every if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
+    drives = _drives_table(result, gating_findings, every, rules, width)
     parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
-    if found:
-        parts += [_broken_rules_table(found, _let_through_words(result, every)), Text()]
-    end = _exit_and_next_steps_lines(result, found or every, out, width)
+    if gating_findings:
+        parts += [_broken_rules_table(gating_findings, _let_through_words(result, every)), Text()]
+    end = _exit_and_next_steps_lines(result, gating_findings or every, out, width)
     lines = [*_lines_on_rules_and_inputs(result), Text(), *end]
     return Group(*parts, *_lines_with_each_misfit_once(result, _outcome_text(result).plain, lines))
 
@@ -116,8 +116,8 @@ def gating_findings_worst_first(result: Result) -> list[Row]:
     gate, rows = result.gate, result.findings
     if gate is not None:
         rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
-    found: list[Row] = worst_first(rows, _rules_by_id(result)).to_pylist()
-    return found
+    findings: list[Row] = worst_first(rows, _rules_by_id(result)).to_pylist()
+    return findings
 
 
 def outcome_line(result: Result) -> str:
@@ -131,9 +131,9 @@ def _rules_by_id(result: Result) -> dict[str, Any]:
 
 def _outcome_text(result: Result) -> Text:
     """Return the run's outcome as word and sentence; if nothing was judged, also the reason."""
-    told, ended = headline(result), exit_status(result)
-    text = Text(f"{told.label}  ", _STYLE_OF_LABEL.get(told.label, _STYLE_OF_OTHER_LABELS))
-    for n, part in enumerate(told.parts):
+    outcome, ended = headline(result), exit_status(result)
+    text = Text(f"{outcome.label}  ", _STYLE_OF_LABEL.get(outcome.label, _STYLE_OF_OTHER_LABELS))
+    for n, part in enumerate(outcome.parts):
         text.append(f"{'; ' if n else ''}", "default").append(
             part.words, _STYLE_OF_HEADLINE_PART.get(part.kind, "default")
         )
@@ -170,8 +170,8 @@ def _drives_table(
     starts = result.start_times
 
     def sort_key(drive: Row) -> tuple[Any, ...]:
-        mine = of_drive.get(drive["drive_id"], [])
-        n = [-sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
+        findings = of_drive.get(drive["drive_id"], [])
+        n = [-sum(row["severity"] == severity for row in findings) for severity in counts.SEVERITIES]
         return drive["status"] == "judged", *n, drive["drive_id"], drive["file_name"]
 
     drives = sorted(result.drives.to_pylist(), key=sort_key)
@@ -187,25 +187,25 @@ def _drives_table(
     def add_row(name: Text, worst: RenderableType, cells: Iterable[Text] = ()) -> None:
         table.add_row(*((name, worst) if is_beside else (Group(name, worst),)), *cells)
 
-    for drive, shown in zip(drives, names, strict=False):
+    for drive, label in zip(drives, names, strict=False):
         name = drive["drive_id"]
-        mine = of_drive.get(name, [])
+        findings = of_drive.get(name, [])
         if drive["status"] != "judged":
-            add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
+            add_row(Text(label, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
         worst: RenderableType
-        if mine:
-            worst = _finding_cell(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
+        if findings:
+            worst = _finding_cell(findings[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
             worst = _let_through_cell(
                 result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1
             )
         else:
             worst = _no_finding_cell(drive, unknown[name], lacks_signals=name in lacking)
-        n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
+        n = [sum(row["severity"] == severity for row in findings) for severity in counts.SEVERITIES]
         cells = [_count_cell(k, STYLE_OF_SEVERITY[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         n_unknown = unknown[name]["unknown"] + unrecorded[name]
-        add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, [*cells, _count_cell(n_unknown, "yellow")])
+        add_row(Text(label, "yellow" if drive["lossy"] else ""), worst, [*cells, _count_cell(n_unknown, "yellow")])
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
@@ -242,11 +242,11 @@ def _finding_cell(
     For a contact, return the other actor and the closing speed just before the contact instead of the rule.
     """
     contact = is_contact(row, rules)
-    who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
+    object_names = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
     if contact and row["closing_mps"] is not None:
-        parts = [*who, closing_speed_words(row["closing_mps"])]
-        who = []
+        parts = [*object_names, closing_speed_words(row["closing_mps"])]
+        object_names = []
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
         limit = "at most" if rules[row["rule_id"]]["sense"] in {"<", "<="} else "needs"
@@ -256,11 +256,11 @@ def _finding_cell(
         )
     if not contact:
         parts.append(breach_title(rules[row["rule_id"]]))
-    parts += who
+    parts += object_names
     if later := worst_time_words(row, rules, start_ns):
         parts.append(later)
     ego = f"{ego_name(row['ego_id'])} " if several_egos else ""
-    what = "possible contact " if doubt_words(row) else "CONTACT "
+    contact_words = "possible contact " if doubt_words(row) else "CONTACT "
     if doubt_words(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
     cell = Table.grid(padding=(0, 1, 0, 0))
@@ -268,15 +268,15 @@ def _finding_cell(
     cell.add_column(overflow="fold")
     cell.add_row(
         Text.assemble((let_through_because, "yellow"), f"{seconds(moment_ns(row, rules), start_ns):>8}"),
-        Text.assemble(ego, (what if contact else "", "bold red"), "; ".join(parts)),
+        Text.assemble(ego, (contact_words if contact else "", "bold red"), "; ".join(parts)),
     )
     return cell
 
 
 def _let_through_words(result: Result, every: list[Row]) -> str:
     """Return in words how many findings a gate lets through, by the reason; '' for none."""
-    counted = Counter(status_at_gate(result.gate, row["finding_id"]) for row in every)
-    return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH_WORDS.items() if counted[name])
+    n_by_status = Counter(status_at_gate(result.gate, row["finding_id"]) for row in every)
+    return ", ".join(f"{n_by_status[name]} {words}" for name, words in LET_THROUGH_WORDS.items() if n_by_status[name])
 
 
 def _broken_rules_table(findings: list[Row], left_out_words: str) -> Table:
@@ -305,23 +305,25 @@ def _broken_rules_table(findings: list[Row], left_out_words: str) -> Table:
 def _lines_on_rules_and_inputs(result: Result) -> list[Text]:
     """Return the lines on the number of rules judged, profiles, unknown verdicts by reason, map and logs."""
     n = rule_counts(result)
-    said = [f"{n.judged_somewhere} judged", f"{n.never} could never be judged" if n.never else ""]
-    said += [f"{n.unrecorded} need a signal that the log lacks" if n.unrecorded else ""]
-    said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
+    parts = [f"{n.judged_somewhere} judged", f"{n.never} could never be judged" if n.never else ""]
+    parts += [f"{n.unrecorded} need a signal that the log lacks" if n.unrecorded else ""]
+    parts += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
-    first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"
+    first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in parts if part)}"
     if near:
         first += f"    near misses: {near}"
-    if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
-        first += f"    judged in: {', '.join(sorted(given))}"
+    if conditions := {
+        f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()
+    }:
+        first += f"    judged in: {', '.join(sorted(conditions))}"
     return [Text(first), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)]
 
 
 def _profile_lines(result: Result) -> list[Text]:
     """Return the meaning of the profiles whose names are in brackets after the numbers of findings."""
     names = sorted(set(result.findings["profile"].to_pylist()) & PROFILE_MEANINGS.keys())
-    said = "; ".join(f"{name}: {PROFILE_MEANINGS[name]}" for name in names)
-    return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
+    meanings = "; ".join(f"{name}: {PROFILE_MEANINGS[name]}" for name in names)
+    return [Text(f"profiles of overtaking (one overtake counts once): {meanings}", "dim")] if names else []
 
 
 def _unknown_reason_lines(result: Result) -> list[Text]:
@@ -380,8 +382,8 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
         return lines
     lines.append(Text(f"open     {out}/report.html"))
     unknown = [row for rows in undecided_verdicts_by_cause(result) for row in rows if row["verdict"] == "unknown"]
-    if told := findings or unknown:
-        name = f"{told[0]['rule_id']}@{told[0]['drive_id']}"
+    if candidates := findings or unknown:
+        name = f"{candidates[0]['rule_id']}@{candidates[0]['drive_id']}"
         is_safe = terminal_safe_line(name) == name  # the printed command must work in a shell
         if findings and not is_safe:
             name = findings[0]["finding_id"]

@@ -40,13 +40,13 @@ def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
 
 def certainty_rank(row: Row) -> int:
     """Return 0 for a sure finding, 2 for a finding that is only possible, and 1 for a verdict or if no copies were judged."""
-    said = None if row.get("n_copies") is None else certainty(row)
-    return {SURE: 0, None: 1, POSSIBLE: 2}[said]
+    word = None if row.get("n_copies") is None else certainty(row)
+    return {SURE: 0, None: 1, POSSIBLE: 2}[word]
 
 
 def _copy_counts(rows: pa.Table) -> list[Row]:
-    told = rows.select([name for name in ("n_copies", "n_stays") if name in rows.column_names])
-    return told.to_pylist() if told.num_columns else [{}] * rows.num_rows
+    count_columns = rows.select([name for name in ("n_copies", "n_stays") if name in rows.column_names])
+    return count_columns.to_pylist() if count_columns.num_columns else [{}] * rows.num_rows
 
 
 def moment_ns(row: Row, rules: Mapping[str, Row]) -> int | None:

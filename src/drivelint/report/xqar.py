@@ -39,7 +39,7 @@ def render(result: Result) -> bytes:
     root = etree.Element("CheckerResults", version="1.0.0")
     reasons = counts.distinct_rows(result.verdicts, ["drive_id", "rule_id", "verdict", "reason"])
     place = itemgetter("drive_id", "rule_id")
-    said, found = counts.group_rows(reasons, place), counts.group_rows(result.findings.to_pylist(), place)
+    verdicts, findings = counts.group_rows(reasons, place), counts.group_rows(result.findings.to_pylist(), place)
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, checked on the drive {drive['drive_id']}"
@@ -52,10 +52,10 @@ def render(result: Result) -> bytes:
         for rule in rules:
             at = drive["drive_id"], rule["rule_id"]
             total += _write_checker_and_return_verdict_counts(
-                bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate
+                bundle, rule, drive, verdicts.get(at, ()), findings.get(at, ()), gate=result.gate
             )
-        judged = drive["status"] == "judged"
-        summary = _counts_text(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
+        is_judged = drive["status"] == "judged"
+        summary = _counts_text(total) if is_judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
         bundle.set("summary", replace_non_xml(summary))
     for number, issue in enumerate(root.iter("Issue")):  # ASAM's reader needs numbers that are unique in the file
         issue.set("issueId", str(number))
@@ -84,13 +84,13 @@ def _write_checker_and_return_verdict_counts(
     verdict_counts: Counter[str] = Counter()
     for row in verdict_rows:
         verdict_counts[row["verdict"]] += row["count_all"]
-    judged = verdict_counts["pass"] or verdict_counts["fail"] or findings
-    status = "error" if verdict_counts["error"] else "completed" if judged else "skipped"
+    is_judged = verdict_counts["pass"] or verdict_counts["fail"] or findings
+    status = "error" if verdict_counts["error"] else "completed" if is_judged else "skipped"
     why = (
         "" if status == "completed" else "; ".join(with_count(row["reason"], row["count_all"]) for row in verdict_rows)
     )
-    none = "the drive was not judged" if drive["status"] != "judged" else "no verdict"
-    summary = _counts_text(verdict_counts) if verdict_rows else none
+    no_verdict_text = "the drive was not judged" if drive["status"] != "judged" else "no verdict"
+    summary = _counts_text(verdict_counts) if verdict_rows else no_verdict_text
     checker = add_element(
         bundle,
         "Checker",
@@ -134,9 +134,9 @@ def _write_event(checker: etree._Element, event: Event, rule: Row, start_ns: int
         add_element(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")
     add_element(place, "TimeLocation", time=repr(row["t_worst_ns"] / 1e9))
     names = ("finding_id", "profile", "ego_id", "object_id", "observed", "required", "margin", "unit", "lanelet_id")
-    told = add_element(issue, "DomainSpecificInfo", name="drivelint")
-    for each in (row, *event.other_rows):
-        add_element(told, "Finding", **{name: str(each[name]) for name in names if each[name] is not None})
+    info = add_element(issue, "DomainSpecificInfo", name="drivelint")
+    for finding in (row, *event.other_rows):
+        add_element(info, "Finding", **{name: str(finding[name]) for name in names if finding[name] is not None})
 
 
 def _add_issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._Element:

@@ -74,14 +74,20 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     if gate is None:
         return None
     kinds = Counter(status.kind for name in finding_ids if (status := finding_status(gate, name)) is not None)
-    shown = [kind for kind in _STATUS_LABELS if kind != ("open" if gate.baseline is not None else "new")]
-    given = {"waived": bool(gate.waivers), "known": gate.baseline is not None, "possible": gate.confidence is not None}
+    shown_kinds = [kind for kind in _STATUS_LABELS if kind != ("open" if gate.baseline is not None else "new")]
+    applies = {
+        "waived": bool(gate.waivers),
+        "known": gate.baseline is not None,
+        "possible": gate.confidence is not None,
+    }
     before = gate.baseline
-    gone = {kind: before.with_diff_status(kind) for kind in _STATUSES_OF_DIFFERING_BASELINE_FINDINGS} if before else {}
+    entries_by_status = (
+        {kind: before.with_diff_status(kind) for kind in _STATUSES_OF_DIFFERING_BASELINE_FINDINGS} if before else {}
+    )
     return {
         "since": before.base_name if before else "",
         "confidence": gate.confidence,
-        "counts": [(kind, _status_label(gate, kind), kinds[kind]) for kind in shown if given.get(kind, True)],
+        "counts": [(kind, _status_label(gate, kind), kinds[kind]) for kind in shown_kinds if applies.get(kind, True)],
         "waivers": [
             (waiver, label, descriptions.waiver_scope_phrase(waiver))
             for state, label in _WAIVER_STATES.items()
@@ -95,8 +101,8 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
                 "n": len(entries),
                 "lines": [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED_FINDINGS]],
             }
-            for kind, entries in gone.items()
+            for kind, entries in entries_by_status.items()
             if entries
         ],
-        "more_unknown": sum(each.n - each.base_n for each in before.new_unknowns) if before else 0,
+        "more_unknown": sum(unknowns.n - unknowns.base_n for unknowns in before.new_unknowns) if before else 0,
     }

@@ -22,23 +22,26 @@ def speeds_before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, 
     if contact["object_id"] not in ways:
         return None
     ego, met = (
-        {point["t_ns"]: point for point in ways.get(who, [])} for who in (contact["ego_id"], contact["object_id"])
+        {point["t_ns"]: point for point in ways.get(actor_id, [])}
+        for actor_id in (contact["ego_id"], contact["object_id"])
     )
     times = sorted(t for t in ego.keys() & met.keys() if t < contact["t_start_ns"])
     if not times or contact["t_start_ns"] - times[-1] > LONGEST_TIME_BEFORE_CONTACT_NS:
         return None
     last = times[-1]
-    speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]
-    said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
+    speeds = [
+        (actor_id, way[last]["speed_mps"]) for actor_id, way in ((contact["ego_id"], ego), (contact["object_id"], met))
+    ]
+    speeds_text = ", ".join(f"{actor_id} at {v:.1f} m/s" for actor_id, v in speeds if v is not None)
     # a scene does not contain every step: the closing speed may be from a later step than `last`
     nearing = (
         ""
         if contact["closing_mps"] is None
         else f"{closing_speed_words(contact['closing_mps'])} just before the contact"
     )
-    told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
+    parts = [nearing, f"at {seconds(last, start_ns)}: {speeds_text}" if speeds_text else ""]
     return {
         "time": seconds(last, start_ns),
         "speeds": speeds,
-        "words": "; ".join(part for part in told if part),
+        "words": "; ".join(part for part in parts if part),
     }

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 def glossary_entries(texts: Iterable[str]) -> list[tuple[str, str]]:
     """Return the words of `glossary.toml` that occur in at least one of the texts, each with its meaning."""
-    said = " ".join(texts).lower()
+    text = " ".join(texts).lower()
     entries = toml_beside(__file__, "glossary.toml")["word"]
-    return [(entry["word"], entry["means"]) for entry in entries if entry["sign"] in said]
+    return [(entry["word"], entry["means"]) for entry in entries if entry["sign"] in text]
 
 
 def notes_on_published_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
@@ -29,6 +29,6 @@ def notes_on_published_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
     notes = [
         toml_beside(str(file), file.name) for file in sorted((Path(__file__).parent / "known_logs").glob("*.toml"))
     ]
-    known = {sha256: note for note in notes for sha256 in note["logs"]}
-    found = [known[row["sha256"]] for row in drives if row["sha256"] in known]
-    return list({note["title"]: note for note in found}.values())
+    notes_by_sha256 = {sha256: note for note in notes for sha256 in note["logs"]}
+    drive_notes = [notes_by_sha256[row["sha256"]] for row in drives if row["sha256"] in notes_by_sha256]
+    return list({note["title"]: note for note in drive_notes}.values())

@@ -82,8 +82,8 @@ def finding_line(
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
     sure = certainty_on_page(row, same_contact_findings) if kind == "fail" else None
-    found = [status.filter_key] if status else []
-    found += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
+    filter_keys = [status.filter_key] if status else []
+    filter_keys += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
     moment = moment_ns(row, {rule["rule_id"]: rule})
     first_contact = "" if moment == row["t_worst_ns"] else f"; first contact at {seconds(moment, start_ns)}"
     place = anchor("finding", row["finding_id"]) if has_section and kind == "fail" else ""
@@ -93,7 +93,7 @@ def finding_line(
         kind,
         anchor=place,
         href=f"#{place or anchor('moment', *incident_key(row))}" if has_section else "",
-        keys=" ".join((kind, row["severity"], rule["pack"], *found)),
+        keys=" ".join((kind, row["severity"], rule["pack"], *filter_keys)),
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         when=when(row, {rule["rule_id"]: rule}, start_ns).replace(" s", non_breaking(" s")),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
@@ -118,15 +118,15 @@ def certainty_on_page(finding: Row, same_contact_findings: Sequence[Row] = ()) -
 
     Copies are copies of the drive with assumed recording errors. `same_contact_findings`: other findings of the same contact.
     """
-    said = certainty(finding)
-    if said is None:
+    kind = certainty(finding)
+    if kind is None:
         return {"kind": "", "label": "not tested", "why": "no copies with assumed errors were judged"}
     of = f"{finding['n_stays']} of {finding['n_copies']}"
-    only = "only " if said == POSSIBLE else ""
+    only = "only " if kind == POSSIBLE else ""
     why = f"it is also a finding in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().standard_deviations_text})"
-    if others := other_certainty_words(finding, same_contact_findings):
-        why += f"; {others}"
-    return {"kind": said, "label": f"{said}, {of}", "why": why}
+    if other_words := other_certainty_words(finding, same_contact_findings):
+        why += f"; {other_words}"
+    return {"kind": kind, "label": f"{kind}, {of}", "why": why}
 
 
 def incident_key(row: Row) -> Key:
@@ -158,10 +158,10 @@ def incidents(lines: Sequence[FindingLine], views: Mapping[Key, dict[str, Any]],
     """
     groups, leading = group_rows(lines, lambda line: incident_key(line.row)), _ranks_in_summary(lines)
     return [
-        _incident(at, found, drive)
+        _incident(at, group, drive)
         | {"plan": views.get(at), "leading": at in leading, "rank": leading.get(at)}
         | {"cameras": [], "pictured": ""}
-        for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
+        for at, group in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
 
 
@@ -177,11 +177,11 @@ def plan_views(
     """Return the plan views of the first `max_views` incidents of `lines`. `before`: the speeds before a contact, in words."""
     lines_by_incident = group_rows(lines, lambda line: incident_key(line.row))
     views: dict[Key, dict[str, Any]] = {}
-    for at, found in [(at, found) for at, found in lines_by_incident.items() if at in scenes][:max_views]:
-        about = any(_DANGER_SPACE_TAG in line.rule["tags"] for line in found)
-        contact = next((line.row for line in found if line.kind == "fail" and CONTACT_TAG in line.rule["tags"]), None)
+    for at, group in [(at, group) for at, group in lines_by_incident.items() if at in scenes][:max_views]:
+        about = any(_DANGER_SPACE_TAG in line.rule["tags"] for line in group)
+        contact = next((line.row for line in group if line.kind == "fail" and CONTACT_TAG in line.rule["tags"]), None)
         before = None if contact is None else speeds_before_contact(scenes[at], contact, starts.get(at[0], 0))
-        picture = plan_view(scenes[at], road, _object_ids(found), spaces.get(at, []) if about else [])
+        picture = plan_view(scenes[at], road, _object_ids(group), spaces.get(at, []) if about else [])
         views[at] = picture | {"before": before["words"] if before else ""}
     return views
 
@@ -245,26 +245,26 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
     `n`: the number of findings about the actor.
     """
     findings: Counter[tuple[bool, str]] = Counter()
-    seen: dict[str, list[Row]] = defaultdict(list)
+    actor_rows: dict[str, list[Row]] = defaultdict(list)
     for line in lines:
         scene = scenes.get(incident_key(line.row))
         actors = {actor["actor_id"]: actor for actor in scene["actors"]} if scene else {}
-        for is_object, who in ((False, line.row["ego_id"]), (True, line.row["object_id"])):
-            if who is not None:
-                findings[is_object, who] += line.kind == "fail"
-                if who in actors:
-                    seen[who].append(actors[who])
+        for is_object, actor_id in ((False, line.row["ego_id"]), (True, line.row["object_id"])):
+            if actor_id is not None:
+                findings[is_object, actor_id] += line.kind == "fail"
+                if actor_id in actors:
+                    actor_rows[actor_id].append(actors[actor_id])
     order = sorted(findings.items(), key=lambda item: (item[0][0], -item[1], item[0][1]))
     return [
         {
-            "name": f"object {who}" if is_object else ego_name(who),
-            "what": _actor_class_words(seen[who]),
-            "sized": next((a for a in seen[who] if None not in {a["length_m"], a["width_m"]}), None),
-            "speeds": [a["speed_mps"] for a in seen[who] if a["speed_mps"] is not None],
+            "name": f"object {actor_id}" if is_object else ego_name(actor_id),
+            "what": _actor_class_words(actor_rows[actor_id]),
+            "sized": next((a for a in actor_rows[actor_id] if None not in {a["length_m"], a["width_m"]}), None),
+            "speeds": [a["speed_mps"] for a in actor_rows[actor_id] if a["speed_mps"] is not None],
             "n": n,
         }
-        for (is_object, who), n in order
-        if not (is_object and (False, who) in findings)
+        for (is_object, actor_id), n in order
+        if not (is_object and (False, actor_id) in findings)
     ]
 
 

@@ -38,9 +38,9 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
         }
         for i in range(first, min(first + _MOST_SHOWN_STEPS, len(t)))
     ]
-    measured = len(t) >= _LEAST_STEPS_FOR_CHART and any(value is not None for value in row["observed"])
+    has_chart = len(t) >= _LEAST_STEPS_FOR_CHART and any(value is not None for value in row["observed"])
     return {
-        "chart": _chart(row, worst, unit, start_ns) if measured else None,
+        "chart": _chart(row, worst, unit, start_ns) if has_chart else None,
         "unit": unit or "",
         "steps": steps,
         "n_steps": len(t),
@@ -55,19 +55,22 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, A
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
-    seen = row["observed"][worst]
-    limits = [v for v, kept in zip(row["required"], row["holds"], strict=True) if kept is False]
-    deciding = [v for v in (seen, row["required"][worst], *limits) if v is not None]
-    y, cut = axis_for_deciding_values(values, deciding, _BOTTOM, _TOP)
+    worst_value = row["observed"][worst]
+    limits = [v for v, is_kept in zip(row["required"], row["holds"], strict=True) if is_kept is False]
+    deciding = [v for v in (worst_value, row["required"][worst], *limits) if v is not None]
+    y, cut_values = axis_for_deciding_values(values, deciding, _BOTTOM, _TOP)
     return {
         "observed": _line_path(t, row["observed"], x, y),
         "required": _line_path(t, row["required"], x, y),
         "spans": _spans_not_kept(t, row["holds"], x),
-        "worst": (svg_number(x.at(t[worst])), svg_number((_TOP + _BOTTOM) / 2 if seen is None else y.at(seen))),
+        "worst": (
+            svg_number(x.at(t[worst])),
+            svg_number((_TOP + _BOTTOM) / 2 if worst_value is None else y.at(worst_value)),
+        ),
         "t_ticks": x.ticks(6),
         "v_ticks": y.ticks(4),
         "unit": unit or "",
-        "cut": " and ".join(number(v, unit) for v in cut),
+        "cut": " and ".join(number(v, unit) for v in cut_values),
         "t0": round(t[0] * 100),
         "t1": round(t[-1] * 100),
         "words": _chart_words(row, t, unit),
@@ -98,24 +101,24 @@ def _spans_not_kept(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -
     """Return the periods in which the rule is not kept or unknown; each extends by half a step on both sides."""
     half, gap = _typical_step_s(t) / 2, 3 * _typical_step_s(t)
     runs: list[tuple[str, float, float]] = []
-    for at, kept in zip(t, holds, strict=True):
-        kind = {True: "", False: "fail", None: "unknown"}[kept]
+    for at, is_kept in zip(t, holds, strict=True):
+        kind = {True: "", False: "fail", None: "unknown"}[is_kept]
         if runs and runs[-1][0] == kind and at - runs[-1][2] <= gap:
             runs[-1] = kind, runs[-1][1], at
         else:
             runs.append((kind, at, at))
-    drawn = []
+    spans = []
     for kind, a, b in runs:
         if kind:
             left, right = max(x.at(a - half), _LEFT), min(x.at(b + half), _RIGHT)
-            drawn.append({"kind": kind, "x": svg_number(left), "w": svg_number(max(right - left, 1.5))})
-    return drawn
+            spans.append({"kind": kind, "x": svg_number(left), "w": svg_number(max(right - left, 1.5))})
+    return spans
 
 
 def _chart_words(row: Row, t: Sequence[float], unit: str | None) -> str:
-    seen = [v for v in row["observed"] if v is not None]
-    between = f"observed between {number(min(seen), unit)} and {number(max(seen), unit)}, "
-    failed = sum(kept is False for kept in row["holds"])
+    values = [v for v in row["observed"] if v is not None]
+    between = f"observed between {number(min(values), unit)} and {number(max(values), unit)}, "
+    failed = sum(is_kept is False for is_kept in row["holds"])
     last = next((v for v in reversed(row["required"]) if v is not None), None)
     required = "" if last is None else f"required {number(last, unit)} at the end, "
     return f"From {t[0]:.1f} s to {t[-1]:.1f} s: {between}{required}not kept at {failed} of {len(t)} steps"

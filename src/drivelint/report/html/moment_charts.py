@@ -51,46 +51,48 @@ def charts_below_plan_view(
         return None
     t = [point["t_ns"] for point in way]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
-    who = ([("met", met)] if met else []) + [("ego", ego)]  # drawn in this order
-    drawn: list[tuple[str, str, list[ChartLine]]] = [
-        (title, unit, [_line_of_actor(kind, actor, column) for kind, actor in who])
+    actors = ([("met", met)] if met else []) + [("ego", ego)]  # drawn in this order
+    quantities: list[tuple[str, str, list[ChartLine]]] = [
+        (title, unit, [_line_of_actor(kind, actor, column) for kind, actor in actors])
         for title, unit, column in (
             ("speed", "m/s", "speed_mps"),
             ("acceleration", "m/s2", "accel_mps2"),
             ("offset from the lane's centre, left positive", "m", "d_m"),
         )
     ]
-    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES_FOR_CHART
-    is_gap = measured and finding["unit"] == "m"
+    is_measured = (
+        course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES_FOR_CHART
+    )
+    is_gap = is_measured and finding["unit"] == "m"
     if met and not is_gap and (gap := box_distance_line(ego, met)) is not None:
-        drawn.append(("distance from box to box", "m", [gap]))
-    if measured and course is not None:
+        quantities.append(("distance from box to box", "m", [gap]))
+    if is_measured and course is not None:
         lines = [
             ChartLine("limit", "required", course["t_ns"], course["required"]),
             ChartLine("ego", "observed", course["t_ns"], course["observed"]),
         ]
-        drawn.append((observes or "what the rule measures", finding["unit"] or "", lines))
-    kept = [
-        each
-        for each in drawn
-        if any(sum(v is not None for v in line.values) >= _LEAST_VALUES_FOR_CHART for line in each[2])
+        quantities.append((observes or "what the rule measures", finding["unit"] or "", lines))
+    shown_quantities = [
+        quantity
+        for quantity in quantities
+        if any(sum(v is not None for v in line.values) >= _LEAST_VALUES_FOR_CHART for line in quantity[2])
     ]
-    found: list[dict[str, Any]] = []
+    charts: list[dict[str, Any]] = []
     end = 0.0
-    for each in kept:
-        of_rule = course if each[2][0].kind == "limit" else None
-        found.append(_chart_of_quantity(end, *each, finding["t_worst_ns"], x=x, course=of_rule))
-        end = float(found[-1]["bottom"])
+    for quantity in shown_quantities:
+        of_rule = course if quantity[2][0].kind == "limit" else None
+        charts.append(_chart_of_quantity(end, *quantity, finding["t_worst_ns"], x=x, course=of_rule))
+        end = float(charts[-1]["bottom"])
     height = end + _FOOT
     return {
         "height": svg_number(height),
         "bottom": svg_number(height - _FOOT),
-        "strips": found,
+        "strips": charts,
         "t_ticks": _axis_in_seconds(x, start_ns).ticks(9),
         "at": svg_number(x.at(finding["t_worst_ns"])),
         "t0": round((t[0] - start_ns) / 1e7),
         "t1": round((t[-1] - start_ns) / 1e7),
-        "words": "; ".join(f"{each['title']} {each['range']}" for each in found),
+        "words": "; ".join(f"{chart['title']} {chart['range']}" for chart in charts),
         "met": met["actor_id"] if met else None,
         "ego": ego_name(ego["actor_id"]),
     }
@@ -128,10 +130,14 @@ def _chart_of_quantity(
     ]
     inside = inside or [v for line in lines for v in line.values if v is not None]
     deciding = _values_deciding_verdict(lines, course, worst_ns)
-    _, cut = axis_for_deciding_values(inside, deciding, _HEIGHT, 0.0)
-    cut_off = f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
+    _, cut_values = axis_for_deciding_values(inside, deciding, _HEIGHT, 0.0)
+    cut_off = (
+        f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut_values)}"
+        if cut_values
+        else ""
+    )
     at_worst = _values_at_worst_text(lines, worst_ns)
-    words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
+    words = f"{title}, {unit} {f'({cut_off}) ' if cut_values else ''}{at_worst}"
     label_y = begin + _HEAD - 5
     value_y = label_y if len(words) * _CHAR_WIDTH <= RIGHT - LEFT else label_y + _LINE
     top = value_y + 5
@@ -163,28 +169,29 @@ def _values_deciding_verdict(lines: Sequence[ChartLine], course: Row | None, wor
     if course is None:
         return []
     at = min(range(len(course["t_ns"])), key=lambda i: abs(course["t_ns"][i] - worst_ns))
-    limits = [value for value, kept in zip(course["required"], course["holds"], strict=True) if kept is False]
+    limits = [value for value, is_kept in zip(course["required"], course["holds"], strict=True) if is_kept is False]
     return [value for value in (*(line.values[at] for line in lines), *limits) if value is not None]
 
 
 def _values_at_worst_text(lines: Sequence[ChartLine], worst_ns: int) -> str:
     """Return the values at the worst step in words, without the unit, which the chart's title contains."""
-    told = []
+    texts = []
     for line in lines:
         value = dict(zip(line.t_ns, line.values, strict=True)).get(worst_ns)
         if value is not None:
-            shown = value if lines[0].kind == "limit" else round(value, 2) + 0.0  # unrounded: -0.001 may break a rule
-            told.append(f"{line.name} {number(shown)}")
-    return ", ".join(reversed(told))
+            # unrounded: -0.001 may break a rule
+            shown_value = value if lines[0].kind == "limit" else round(value, 2) + 0.0
+            texts.append(f"{line.name} {number(shown_value)}")
+    return ", ".join(reversed(texts))
 
 
 def _failing_spans(course: Row, x: Axis) -> list[tuple[str, str]]:
     """Return the periods in which the rule was not kept, each as position and width."""
     runs: list[list[int]] = []
-    for t, kept in zip(course["t_ns"], course["holds"], strict=True):
-        if kept is False and runs and t - runs[-1][1] <= _LONGEST_JOINED_GAP_NS and runs[-1][2]:
+    for t, is_kept in zip(course["t_ns"], course["holds"], strict=True):
+        if is_kept is False and runs and t - runs[-1][1] <= _LONGEST_JOINED_GAP_NS and runs[-1][2]:
             runs[-1][1] = t
-        elif kept is False:
+        elif is_kept is False:
             runs.append([t, t, 1])
         elif runs:
             runs[-1][2] = 0

@@ -54,8 +54,8 @@ def overtake_views(
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
         return None
-    told = {(p["style"], p["profile"]) for row in records for p in row["profiles"]}
-    profiles = [profile for _, profile in sorted(told)]
+    pairs = {(p["style"], p["profile"]) for row in records for p in row["profiles"]}
+    profiles = [profile for _, profile in sorted(pairs)]
     picked = sorted(records, key=_least_spare_sort_key)[:MAX_OVERTAKES]
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
     return {
@@ -102,48 +102,48 @@ def _profile_cell(p: Row) -> Row:
 
 def _axis_labels(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     """Return positions and labels on the axis; labels that would overlap are joined at the position of the first."""
-    kept: list[tuple[float, str]] = []
+    labels: list[tuple[float, str]] = []
     for at, label in times:
-        if kept and at - kept[-1][0] < _LEAST_LABEL_DISTANCE_PERCENT:
-            kept[-1] = kept[-1][0], f"{kept[-1][1]}, {label}"
+        if labels and at - labels[-1][0] < _LEAST_LABEL_DISTANCE_PERCENT:
+            labels[-1] = labels[-1][0], f"{labels[-1][1]}, {label}"
         else:
-            kept.append((at, label))
-    return [(percent(at), label) for at, label in kept]
+            labels.append((at, label))
+    return [(percent(at), label) for at, label in labels]
 
 
 def _stage_spans(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
     """Return the stages, each as name, position and width."""
-    drawn = []
+    spans = []
     for stage in _STAGES:
-        mine = [s for s in stretches if s["stage"] == stage]
-        if mine:
-            a, b = clock.at(min(s["t_start_ns"] for s in mine)), clock.at(max(s["t_end_ns"] for s in mine))
-            drawn.append((stage, percent(a), percent(b - a)))
-    return drawn
+        parts = [s for s in stretches if s["stage"] == stage]
+        if parts:
+            a, b = clock.at(min(s["t_start_ns"] for s in parts)), clock.at(max(s["t_end_ns"] for s in parts))
+            spans.append((stage, percent(a), percent(b - a)))
+    return spans
 
 
 def _assertion_row(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
     """Return assertion `n`: its verdict and greatest depth per stage, and its verdicts over time as bands in percent."""
     cells = []
     for stage in stages:
-        mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
-        verdict = min((said for said, _ in mine), key=_VERDICTS_WORST_FIRST.index)
-        deep = max((m for _, m in mine if m is not None), default=None)
+        outcomes = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
+        verdict = min((word for word, _ in outcomes), key=_VERDICTS_WORST_FIRST.index)
+        deep = max((m for _, m in outcomes if m is not None), default=None)
         cells.append((_VERDICT_BY_ASSERTION_WORD.get(verdict, verdict), deep))
     runs: list[list[Any]] = []
     for s in stretches:
-        said = _VERDICT_BY_ASSERTION_WORD.get(s["said"][n], s["said"][n])
-        if runs and runs[-1][0] == said:
+        word = _VERDICT_BY_ASSERTION_WORD.get(s["said"][n], s["said"][n])
+        if runs and runs[-1][0] == word:
             runs[-1][2] = s["t_end_ns"]
         else:
-            runs.append([said, s["t_start_ns"], s["t_end_ns"]])
+            runs.append([word, s["t_start_ns"], s["t_end_ns"]])
     ends = [start for _, start, _ in runs[1:]] + [runs[-1][2]]
     bands = []
-    for (said, start, last), end in zip(runs, ends, strict=True):
+    for (word, start, last), end in zip(runs, ends, strict=True):
         a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _LEAST_BAND_WIDTH_PERCENT), 100.0)
         bands.append(
             (
-                said,
+                word,
                 percent(min(a, 100.0 - _LEAST_BAND_WIDTH_PERCENT)),
                 percent(b - min(a, 100.0 - _LEAST_BAND_WIDTH_PERCENT)),
             )
@@ -153,23 +153,23 @@ def _assertion_row(n: int, stretches: Sequence[Row], stages: Sequence[str], cloc
 
 def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
     """Return the zone plot: areas, axes, one dot per overtake and profile, names, and the closing speed assumed for the areas."""
-    known = [
+    points = [
         (row, p)
         for row in records
         for p in row["profiles"]
         if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= MOST_SHOWN_SAFE_DISTANCE_AHEAD_M
     ]
-    missing = sum(len(row["profiles"]) for row in records) - len(known)
-    if not known:
+    n_missing = sum(len(row["profiles"]) for row in records) - len(points)
+    if not points:
         return None
-    far = 1.08 * max(p[name] for _, p in known for name in ("da_m", "sda_m"))
+    far = 1.08 * max(p[name] for _, p in points for name in ("da_m", "sda_m"))
     x, y = Axis(0.0, far, 48.0, _PLOT_W - 12.0), Axis(0.0, far, _PLOT_H - 40.0, 10.0)
-    closing = [p["spare_m"] / p["spare_s"] for _, p in known if p["spare_s"]]
+    closing = [p["spare_m"] / p["spare_s"] for _, p in points if p["spare_s"]]
     v = statistics.median(closing) if closing else 0.0
     shapes = {
         profile: _DOT_SHAPE_PER_PROFILE[min(n, len(_DOT_SHAPE_PER_PROFILE) - 1)] for n, profile in enumerate(profiles)
     }
-    rows = {id(row): row for row, _ in known}.values()
+    rows = {id(row): row for row, _ in points}.values()
     return {
         "areas": _zone_areas(x, y, far, v),
         "x_ticks": x.ticks(7),
@@ -183,13 +183,13 @@ def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[
                 "title": f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
                 f"{number(p['da_m'], 'm')}, required more than {number(p['sda_m'], 'm')}, zone {p['zone'] or 'unknown'}",
             }
-            for row, p in known
+            for row, p in points
         ],
         "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _NAMES_SHOWN_UP_TO_N_OVERTAKES else [],
         "shapes": list(shapes.items()),
         "speed": number(v, "m/s"),
         "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,
-        "missing": missing,
+        "missing": n_missing,
     }
 
 
@@ -202,15 +202,15 @@ def _plot_label(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
 def _zone_areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
     """Return the zones from bottom to top: name, path, and the position of its letter (None if the zone is too thin for it)."""
     floors = [-far, *(v * s for s in _SPARE_TIMES_AT_ZONE_STARTS_S), 2 * far]
-    drawn: list[tuple[str, str, tuple[str, str] | None]] = []
+    areas: list[tuple[str, str, tuple[str, str] | None]] = []
     for zone, low, high in zip("ABCD", floors[:-1], floors[1:], strict=True):
         corners = [(0.0, low), (far, low + far), (far, high + far), (0.0, high)]
         path = "M" + " ".join(f"{svg_number(x.at(a))},{svg_number(y.at(b))}" for a, b in corners) + "Z"
         thick = min(high, far) - max(low, 0.0) if zone != "A" else far
         a, b = (0.7 * far, 0.1 * far) if zone == "A" else (0.04 * far, 0.04 * far + (low + min(high, far)) / 2)
         letter = (svg_number(x.at(a)), svg_number(y.at(b) + 6)) if thick > 0.03 * far and b < 0.97 * far else None
-        drawn.append((zone, path, letter))
-    return drawn
+        areas.append((zone, path, letter))
+    return areas
 
 
 def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
@@ -222,13 +222,13 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
         return None
     profiles = [name for _, name in sorted({(row["style"], row["profile"]) for row in records})]
     profile = _PREFERRED_PROFILE if _PREFERRED_PROFILE in profiles else profiles[0]
-    mine = [row for row in records if row["profile"] == profile]
-    known = [row for row in mine if row["da_m"] is not None]
-    bars, x_ticks, y_ticks = _histogram_bars_and_ticks(known) if known else ([], [], [])
+    opportunities = [row for row in records if row["profile"] == profile]
+    known_opportunities = [row for row in opportunities if row["da_m"] is not None]
+    bars, x_ticks, y_ticks = _histogram_bars_and_ticks(known_opportunities) if known_opportunities else ([], [], [])
     return {
         "profile": profile,
-        "n": len(mine),
-        "unknown": len(mine) - len(known),
+        "n": len(opportunities),
+        "unknown": len(opportunities) - len(known_opportunities),
         "bars": bars,
         "x_ticks": x_ticks,
         "y_ticks": y_ticks,
@@ -241,8 +241,8 @@ def _opportunity_counts_by_zone(
 ) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
     """Return a profile with the numbers of opportunities taken and not taken in zones A to D, and in an unknown zone."""
     n = Counter((row["zone"], row["taken"]) for row in records if row["profile"] == profile)
-    *known, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))
-    return profile, known, unknown
+    *known_counts, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))
+    return profile, known_counts, unknown
 
 
 def _histogram_bars_and_ticks(
@@ -257,9 +257,9 @@ def _histogram_bars_and_ticks(
     x = Axis(0.0, n * width, 44.0, _BARS_W - 12.0)
     y = Axis(0.0, float(max(sum(pair) for pair in counts)), _BARS_H - 38.0, 10.0)
     bars = []
-    for k, (taken, passed) in enumerate(counts):
+    for k, (n_taken, n_passed) in enumerate(counts):
         a, b = x.at(k * width), x.at((k + 1) * width)
-        low, middle, high = y.at(0), y.at(taken), y.at(taken + passed)
+        low, middle, high = y.at(0), y.at(n_taken), y.at(n_taken + n_passed)
         bars.append(
             {
                 "x": svg_number(a + 1),
@@ -268,7 +268,7 @@ def _histogram_bars_and_ticks(
                 "taken_h": svg_number(low - middle),
                 "passed_y": svg_number(high),
                 "passed_h": svg_number(middle - high),
-                "words": f"{k * width:g} to {(k + 1) * width:g} m: {taken} taken, {passed} not taken",
+                "words": f"{k * width:g} to {(k + 1) * width:g} m: {n_taken} taken, {n_passed} not taken",
             }
         )
     whole = [(place, label.split(".")[0]) for place, label in y.ticks(4) if float(label) == int(float(label))]

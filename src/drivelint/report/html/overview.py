@@ -27,8 +27,8 @@ _MOST_NAMED_PARTIES: Final = 6
 
 def page_headline(result: Result) -> tuple[str, str, str]:
     """Return the outcome (fail, near, unknown, not_applicable or pass), the word for it, and the sentence at the top of the page."""
-    told = headline(result)
-    return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
+    outcome = headline(result)
+    return outcome.kind, outcome.label, outcome.sentence[:1].upper() + outcome.sentence[1:]
 
 
 def contact_summary(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
@@ -42,30 +42,28 @@ def contact_summary(result: Result, lines: Sequence[FindingLine], rules: Mapping
     ordered = result.findings.sort_by([("drive_id", "ascending"), ("t_worst_ns", "ascending")]).to_pylist()
     touches = [row for row in ordered if is_contact(row, rules)]
     met = counts.group_rows(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
-    named = []
-    for found in met.values():
-        first = min(found, key=certainty_rank)
-        who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
+    contacts = []
+    for rows in met.values():
+        first = min(rows, key=certainty_rank)
+        names = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # print the depth of the overlap: one centimetre may be an error of the recorder
-        measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
-        worst = min(measured, key=lambda row: row["observed"], default=None)
+        measured_rows = [row for row in rows if row["unit"] == "m" and row["observed"] is not None]
+        worst = min(measured_rows, key=lambda row: row["observed"], default=None)
         later = (
             "" if worst is None else worst_time_words(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
         )
         deep = "" if worst is None else f", {measure(-worst['observed'], 'm')} deep{non_breaking(later)}"
         speed = "" if first["closing_mps"] is None else f", {closing_speed_words(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
-        said = (
-            f"{who} at {non_breaking(seconds(moment_ns(first, rules), starts[first['drive_id']]))}{speed}{deep}{where}"
-        )
+        text = f"{names} at {non_breaking(seconds(moment_ns(first, rules), starts[first['drive_id']]))}{speed}{deep}{where}"
         doubt = certainty(first) == POSSIBLE
-        named.append((f"possibly {said}" if doubt else said, hrefs.get(first["finding_id"], ""), doubt))
-    if not named:
+        contacts.append((f"possibly {text}" if doubt else text, hrefs.get(first["finding_id"], ""), doubt))
+    if not contacts:
         return None
-    sure = not all(doubt for *_, doubt in named)
+    sure = not all(doubt for *_, doubt in contacts)
     return {
-        "named": [each[:2] for each in named[:_MOST_NAMED_CONTACTS]],
-        "n_more": len(named[_MOST_NAMED_CONTACTS:]),
+        "named": [contact[:2] for contact in contacts[:_MOST_NAMED_CONTACTS]],
+        "n_more": len(contacts[_MOST_NAMED_CONTACTS:]),
         "sure": sure,
     }
 
@@ -78,17 +76,17 @@ def finding_rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
     """
     km, hours = (float(pc.sum(result.drives[name]).as_py() or 0.0) for name in ("km", "duration_s"))
     hours /= 3600
-    found = counts.group_rows(events, lambda row: row["severity"])
+    by_severity = counts.group_rows(events, lambda row: row["severity"])
     rows = [
         {
             "severity": severity,
-            "n": len(found[severity]),
-            "n_drives": len({row["drive_id"] for row in found[severity]}),
-            "per_100_km": 100 * len(found[severity]) / km if km else None,
-            "per_hour": len(found[severity]) / hours if hours else None,
+            "n": len(by_severity[severity]),
+            "n_drives": len({row["drive_id"] for row in by_severity[severity]}),
+            "per_100_km": 100 * len(by_severity[severity]) / km if km else None,
+            "per_hour": len(by_severity[severity]) / hours if hours else None,
         }
         for severity in counts.SEVERITIES
-        if severity in found
+        if severity in by_severity
     ]
     return {"rows": rows, "per": km >= _LEAST_KM_FOR_RATES and hours >= 1}
 
@@ -101,19 +99,21 @@ def broken_rules(
     `worst`: the rule's worst finding on the page, None if the page shows none of its findings. `events`: one finding of each event.
     """
     verdicts = counts.verdict_counts_by(result.verdicts, "rule_id")
-    shown = counts.group_rows(lines, lambda line: line.row["rule_id"])
-    found = [
+    lines_by_rule = counts.group_rows(lines, lambda line: line.row["rule_id"])
+    entries = [
         {
             "rule": rules[rule_id],
             "n": len(rows),
             "n_drives": len({row["drive_id"] for row in rows}),
             "n_fail": verdicts[rule_id]["fail"],
             "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
-            "worst": min(shown.get(rule_id, []), key=_margin_of_finding_line, default=None),
+            "worst": min(lines_by_rule.get(rule_id, []), key=_margin_of_finding_line, default=None),
         }
         for rule_id, rows in counts.group_rows(events, lambda row: row["rule_id"]).items()
     ]
-    return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
+    return sorted(
+        entries, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"])
+    )
 
 
 def _margin_of_finding_line(line: FindingLine) -> float:
@@ -122,7 +122,7 @@ def _margin_of_finding_line(line: FindingLine) -> float:
 
 def pack_summaries(result: Result) -> list[dict[str, Any]]:
     """Return, for each pack, the number of its rules and of its verdicts of each kind."""
-    told = counts.verdict_counts_by_pack(result.rules, result.verdicts)
+    verdicts_by_pack = counts.verdict_counts_by_pack(result.rules, result.verdicts)
     rules = counts.group_rows(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
     return [
         {
@@ -132,18 +132,18 @@ def pack_summaries(result: Result) -> list[dict[str, Any]]:
             "verdicts": verdicts,
             "shares": verdict_shares(verdicts),
         }
-        for pack, verdicts in told.items()
+        for pack, verdicts in verdicts_by_pack.items()
     ]
 
 
 def verdict_shares(verdicts: Mapping[str, int]) -> list[dict[str, Any]]:
     """Return each kind of verdict with its number, and its position and width in a bar in percent."""
-    total, at, found = sum(verdicts.values()), 0.0, []
+    total, at, shares = sum(verdicts.values()), 0.0, []
     for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
         width = 100 * verdicts[verdict] / total if total else 0.0
-        found.append({"verdict": verdict, "n": verdicts[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
+        shares.append({"verdict": verdict, "n": verdicts[verdict], "x": f"{at:.3f}%", "w": f"{width:.3f}%"})
         at += width
-    return found
+    return shares
 
 
 def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[dict[str, Any]]:
@@ -151,18 +151,18 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
 
     `who`: the vehicles and people that the findings are about.
     """
-    told = []
+    summaries = []
     for section in sections if n_drives <= _DRIVE_SUMMARIES_UP_TO_N_DRIVES else ():
-        who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
+        parties = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
         summary = {
             "drive_id": section["drive_id"],
             "file_name": section["file_name"],
-            "who": who[:_MOST_NAMED_PARTIES],
-            "n_more": len(who[_MOST_NAMED_PARTIES:]),
+            "who": parties[:_MOST_NAMED_PARTIES],
+            "n_more": len(parties[_MOST_NAMED_PARTIES:]),
             "moments": [moment for moment in section["moments"] if moment["leading"]],
         }
-        told += [summary] if summary["moments"] else []
-    return told
+        summaries += [summary] if summary["moments"] else []
+    return summaries
 
 
 def first_page_texts(

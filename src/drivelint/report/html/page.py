@@ -73,41 +73,44 @@ def content(result: Result) -> dict[str, Any]:
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
-    told = counts.verdict_counts_by(result.verdicts, "drive_id")
-    counted = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
-    by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
+    verdicts_by_drive = counts.verdict_counts_by(result.verdicts, "drive_id")
+    events = one_finding_per_event_and_status(result.gate, result.findings.to_pylist())
+    by_drive = counts.group_rows(events, lambda row: row["drive_id"])
     rows = _worst_findings_and_near_misses(result, rules)
-    shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
+    section_drives = _drives_with_section(drives, [row["drive_id"] for _, row in rows], verdicts_by_drive)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
-    lines = _finding_lines(result, rows, rules, starts, courses, linked_drives=shown)
+    lines = _finding_lines(result, rows, rules, starts, courses, linked_drives=section_drives)
     failed = [line for line in lines if line.kind == "fail"]
     moment: Callable[[Row], Key] = itemgetter("drive_id", "ego_id", "t_ns")
     scenes = {moment(row): row for row in result.scenes.to_pylist()}
     spaces = group_rows(result.spaces.to_pylist(), moment)
     road = DrawnMaps(result.lanes)
-    drawn = plan_views(lines, scenes, spaces, road, starts, max_views=MAX_PLAN_VIEWS)
+    views = plan_views(lines, scenes, spaces, road, starts, max_views=MAX_PLAN_VIEWS)
     listed = group_rows(lines, lambda line: line.row["drive_id"])
     anchors = {line.anchor: line.standing.filter_key if line.standing else "" for line in failed}
-    verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
+    verdicts, findings = (
+        _rows_by_drive(result.verdicts, section_drives),
+        _rows_by_drive(result.findings, section_drives),
+    )
     sections = [
         _drive_section(
             row,
-            timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
-            incidents(listed.get(row["drive_id"], []), drawn, row),
+            timelines(row, verdicts.get(row["drive_id"], []), findings.get(row["drive_id"], []), rules, anchors),
+            incidents(listed.get(row["drive_id"], []), views, row),
             involved_actors(listed.get(row["drive_id"], []), scenes),
             unfolded=len(drives) <= UNFOLDED_SECTIONS_UP_TO_N_DRIVES,
         )
         for row in drives
-        if row["drive_id"] in shown
+        if row["drive_id"] in section_drives
     ]
     totals = counts.verdict_counts(result.verdicts)
     worst = worst_moment(
-        lines, MomentEvidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
+        lines, MomentEvidence(scenes, views, courses), {row["drive_id"]: row for row in drives}, result.folder
     )
     cameras = cameras_by_moment(result.pictures)
     add_pictures(worst, sections, cameras)
     broken, told_of = (
-        overview.broken_rules(result, rules, failed, counted),
+        overview.broken_rules(result, rules, failed, events),
         overview.drive_summaries(sections, len(drives)),
     )
     return {
@@ -116,18 +119,18 @@ def content(result: Result) -> dict[str, Any]:
         "inputs": input_notes(result),
         "worst": worst,
         "pictured": bool(cameras),
-        "rates": overview.finding_rates(result, counted),
+        "rates": overview.finding_rates(result, events),
         "contacts": overview.contact_summary(result, failed, rules),
         "rule_counts": rule_counts(result),
         "counts": overview.verdict_shares(totals),
         "names": _VERDICT_WORDS,
         "severities": list(counts.SEVERITIES),
         "passes": totals["pass"],
-        "n_findings": len(counted),
+        "n_findings": len(events),
         "n_rows": result.findings.num_rows,
-        "rows_sentence": counts.extra_rows_sentence(result.findings.to_pylist(), counted),
+        "rows_sentence": counts.extra_rows_sentence(result.findings.to_pylist(), events),
         "n_overtakes": result.overtakes.num_rows,
-        "gate": gate_summary(result.gate, [row["finding_id"] for row in counted]),
+        "gate": gate_summary(result.gate, [row["finding_id"] for row in events]),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "n_assumed": counts.count_verdicts_assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
@@ -145,8 +148,8 @@ def content(result: Result) -> dict[str, Any]:
         "drives": [
             {
                 **row,
-                "href": "#" + anchor("drive", row["drive_id"]) if row["drive_id"] in shown else "",
-                "verdicts": told[row["drive_id"]],
+                "href": "#" + anchor("drive", row["drive_id"]) if row["drive_id"] in section_drives else "",
+                "verdicts": verdicts_by_drive[row["drive_id"]],
                 "findings": [
                     sum(f["severity"] == severity for f in by_drive.get(row["drive_id"], []))
                     for severity in counts.SEVERITIES
@@ -159,9 +162,9 @@ def content(result: Result) -> dict[str, Any]:
         "sections": sections,
         "n_charts": MAX_CHARTS,
         "brief": len(drives) > BRIEF_TIMELINES_ABOVE_N_DRIVES,
-        "tiles": road.tiles() if drawn else [],
-        "shapes": actor_shapes(scenes[at] for at in drawn),
-        "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
+        "tiles": road.tiles() if views else [],
+        "shapes": actor_shapes(scenes[at] for at in views),
+        "replays": replays([scenes[at] for at in views], spaces, starts, road),
         "far_m": MOST_SHOWN_SAFE_DISTANCE_AHEAD_M,
         "overtakes": overtake_views(
             result.overtakes.to_pylist(), starts, {p for ps in result.rules["profiles"].to_pylist() for p in ps}
@@ -223,13 +226,13 @@ def _drives_with_section(
             return 0, place[row["drive_id"]]
         return (1, 0) if verdicts["unknown"] or verdicts["error"] else (2, 0)
 
-    judged = [row for row in drives if row["status"] == "judged"]
-    return {row["drive_id"] for row in sorted(judged, key=sort_key)[:MAX_DRIVE_SECTIONS]}
+    judged_drives = [row for row in drives if row["status"] == "judged"]
+    return {row["drive_id"] for row in sorted(judged_drives, key=sort_key)[:MAX_DRIVE_SECTIONS]}
 
 
 def _rows_by_drive(rows: pa.Table, drive_ids: set[str]) -> dict[str, list[Row]]:
-    mine = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drive_ids), pa.string())))
-    return group_rows(mine.to_pylist(), lambda row: row["drive_id"])
+    drive_rows = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drive_ids), pa.string())))
+    return group_rows(drive_rows.to_pylist(), lambda row: row["drive_id"])
 
 
 def _filter_choices(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
@@ -262,14 +265,14 @@ def _drive_section(
     without = sorted({m["ego_id"] for m in moments} - {t.ego_id for t in ego_timelines})
     ego_timelines = [*ego_timelines, *(empty_timeline(ego_id) for ego_id in without)]
     egos = [{"timeline": t, "moments": [m for m in moments if m["ego_id"] == t.ego_id]} for t in ego_timelines]
-    missing = group_rows(row["not_judged"], lambda gap: gap["reason"])
+    gaps_by_reason = group_rows(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
         "folded": folded,
         "parties": actors,
         "missing": [
             {"reason": why, "n": len(gaps), "egos": ", ".join(gap["ego_id"] for gap in gaps)}
-            for why, gaps in missing.items()
+            for why, gaps in gaps_by_reason.items()
         ],
         "egos": sorted(egos, key=lambda ego: (-len(ego["moments"]), ego["timeline"].ego_id)) if len(egos) > 1 else egos,
         "moments": moments,
@@ -280,13 +283,13 @@ def _drive_section(
 
 def _rules_with_counts(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules with their counts and the worst margin of any verdict."""
-    told = counts.verdict_counts_by(result.verdicts, "rule_id")
+    verdicts_by_rule = counts.verdict_counts_by(result.verdicts, "rule_id")
     worst = result.verdicts.group_by(["rule_id"], use_threads=False).aggregate([("margin", "min")]).to_pylist()
     margins = {row["rule_id"]: row["margin_min"] for row in worst}
     return [
         {
             **rule,
-            "verdicts": told[rule_id],
+            "verdicts": verdicts_by_rule[rule_id],
             "worst": number(margins.get(rule_id), rule["unit"]),
         }
         for rule_id, rule in rules.items()
@@ -298,9 +301,9 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     why = _reasons_of_rules_judged_in_no_drive(result.verdicts)
     order = ("not_applicable", "unknown")
     groups = []
-    for pack, mine in group_rows(_rules_with_counts(result, rules), lambda rule: rule["pack"]).items():
-        judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in mine)
-        idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
+    for pack, pack_rules in group_rows(_rules_with_counts(result, rules), lambda rule: rule["pack"]).items():
+        n_judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in pack_rules)
+        idle = [(*why[rule["rule_id"]], rule) for rule in pack_rules if rule["rule_id"] in why]
         folds = group_rows(
             idle, lambda item: (item[0], item[1].kind, _words_on_rule_judged_in_no_drive(item[2]["verdicts"]))
         )
@@ -308,16 +311,16 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
         groups.append(
             {
                 "pack": pack,
-                "about": mine[0]["pack_title"],
-                "judged": judged,
-                "idle": len(mine) - judged,
-                "rules": [rule for rule in mine if rule["rule_id"] not in why],
+                "about": pack_rules[0]["pack_title"],
+                "judged": n_judged,
+                "idle": len(pack_rules) - n_judged,
+                "rules": [rule for rule in pack_rules if rule["rule_id"] not in why],
                 "folds": [
                     (
-                        (verdict, said, summarise_reasons(reason for _, reason, _ in folded)),
+                        (verdict, words, summarise_reasons(reason for _, reason, _ in folded)),
                         [rule for *_, rule in folded],
                     )
-                    for (verdict, _, said), folded in weightiest
+                    for (verdict, _, words), folded in weightiest
                 ],
             }
         )
@@ -336,11 +339,11 @@ def _reasons_of_rules_judged_in_no_drive(verdicts: pa.Table) -> dict[str, tuple[
     rows = counts.distinct_rows(verdicts, ["rule_id", "verdict", "reason_code", "cause_code", "reason"])
     rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))
     return {
-        rule_id: (told[0]["verdict"], verdict_reason(told[0]))
-        for rule_id, told in group_rows(rows, lambda row: row["rule_id"]).items()
+        rule_id: (rule_rows[0]["verdict"], verdict_reason(rule_rows[0]))
+        for rule_id, rule_rows in group_rows(rows, lambda row: row["rule_id"]).items()
         if all(
             row["verdict"] == "not_applicable"
             or (row["verdict"] == "unknown" and can_missing_data_be_provided(row["reason_code"]))
-            for row in told
+            for row in rule_rows
         )
     }

@@ -23,17 +23,17 @@ _SAME_MOMENT_TOLERANCE_NS: Final = 5_000_000
 def cameras_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
     """Return, by drive and time, the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
     rows = pictures.to_pylist()
-    shown: dict[Moment, list[dict[str, Any]]] = {}
-    for (drive_id, t_ns, _, camera), mine in group_rows(
+    cameras: dict[Moment, list[dict[str, Any]]] = {}
+    for (drive_id, t_ns, _, camera), camera_rows in group_rows(
         rows, lambda row: (row["drive_id"], row["t_ns"], row["camera_no"], row["camera"])
     ).items():
-        shown.setdefault((drive_id, t_ns), []).append(
+        cameras.setdefault((drive_id, t_ns), []).append(
             {
                 "camera": camera,
-                "shots": [_picture_for_page(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])],
+                "shots": [_picture_for_page(row) for row in sorted(camera_rows, key=lambda row: row["t_frame_ns"])],
             }
         )
-    return shown
+    return cameras
 
 
 def add_pictures(
@@ -51,12 +51,12 @@ def add_pictures(
         if worst["cameras"]:
             anchors[moment] = "worst"
     for section in sections:
-        for each in section["moments"]:
-            moment = section["drive_id"], each["t_ns"]
+        for incident in section["moments"]:
+            moment = section["drive_id"], incident["t_ns"]
             if moment in anchors:
-                each["pictured"] = anchors[moment]
+                incident["pictured"] = anchors[moment]
             elif moment in cameras:
-                each["cameras"], anchors[moment] = cameras[moment], each["anchor"]
+                incident["cameras"], anchors[moment] = cameras[moment], incident["anchor"]
 
 
 def _picture_for_page(row: dict[str, Any]) -> dict[str, Any]:

@@ -82,15 +82,15 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
     `object_ids`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
     """
     actors: list[dict[str, Any]] = scene["actors"]
-    ego, others = actors[0], actors[1:]
-    met = [a for a in others if a["actor_id"] in object_ids]
+    ego, other_actors = actors[0], actors[1:]
+    met = [a for a in other_actors if a["actor_id"] in object_ids]
     around = [s for s in spaces if s["actor_id"] in {ego["actor_id"], *object_ids}]
     rings = [(s["actor_id"], np.column_stack([s["x_m"], s["y_m"]])) for s in around]
     lanes = road.lanes_of(scene["environment_id"])
-    shown = [box_corners_m(a) for a in (ego, *met)] + [ring for _, ring in rings]
+    outlines = [box_corners_m(a) for a in (ego, *met)] + [ring for _, ring in rings]
     heading = lanes.road_heading_rad(ego["x_m"], ego["y_m"], ego["yaw_rad"] or 0.0)
-    view = _fitted_view(ego, heading, np.concatenate(shown))
-    texts, gaps, told = _least_distance_labels_and_lines(ego, met, view)
+    view = _fitted_view(ego, heading, np.concatenate(outlines))
+    texts, gaps, distance_words = _least_distance_labels_and_lines(ego, met, view)
     texts += [
         _name_label(a, ego, met, view) for a in _actors_with_label([a for a in actors if view.has_actor(a)], ego, met)
     ]
@@ -100,13 +100,13 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
         "matrix": view.svg_matrix(lanes),
         "tiles": lanes.tile_names(scene["lanelets"]),
         "spaces": [
-            (_role_of_actor(who, ego, object_ids), polygon_path(np.rint(lanes.to_drawn_units(ring))))
-            for who, ring in rings
+            (_role_of_actor(actor_id, ego, object_ids), polygon_path(np.rint(lanes.to_drawn_units(ring))))
+            for actor_id, ring in rings
         ],
         "bodies": [
             _actor_drawing(a, _role_of_actor(a["actor_id"], ego, object_ids), lanes, scene["t_ns"])
             for a in sorted(
-                (*others, ego), key=_drawn_area_m2, reverse=True
+                (*other_actors, ego), key=_drawn_area_m2, reverse=True
             )  # small actors are drawn over large actors
             if a is ego or a in met or view.has_actor(a, _ACTORS_KEPT_BESIDE_VIEW_SHARE)
         ],
@@ -116,7 +116,7 @@ def plan_view(scene: Row, road: DrawnMaps, object_ids: Collection[str], spaces: 
         "scale_m": bar_m,
         "ego": ego,
         "met": met,
-        "told": told,
+        "told": distance_words,
         "around": around,
     }
 
@@ -220,16 +220,16 @@ def _least_distance_labels_and_lines(
     ego: Row, met: Sequence[Row], view: _View
 ) -> tuple[list[dict[str, str]], list[str], list[str]]:
     """Return labels, lines and words of the least distances from the ego's box to the boxes of `met`."""
-    texts, lines, told = [], [], []
+    texts, lines, words = [], [], []
     for actor in met:
         a, b = box_corners_m(ego), box_corners_m(actor)
         nearest = shapely.get_coordinates(shapely.shortest_line(shapely.polygons(a), shapely.polygons(b)))
         far = float(np.hypot(*(nearest[1] - nearest[0])))
         if far < _TOUCHING_DISTANCE_M:
             common = float(shapely.area(shapely.intersection(shapely.polygons(a), shapely.polygons(b))))
-            told.append("the boxes overlap" if common > _TOUCHING_DISTANCE_M else "the boxes touch")
+            words.append("the boxes overlap" if common > _TOUCHING_DISTANCE_M else "the boxes touch")
             continue
-        told.append(f"{far:.2f} m from box to box" + (f" with {actor['actor_id']}" if len(met) > 1 else ""))
+        words.append(f"{far:.2f} m from box to box" + (f" with {actor['actor_id']}" if len(met) > 1 else ""))
         p, q = view(nearest)
         middle = (p + q) / 2
         text = f"{far:.1f} m" if far >= 10 else f"{far:.2f} m"
@@ -241,7 +241,7 @@ def _least_distance_labels_and_lines(
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
             lines.append(polyline_path(np.array([middle, (middle[0], y + (4 if y < middle[1] else -12))])))
             texts.append({"x": svg_number(middle[0]), "y": svg_number(y), "text": text, "kind": "gap"})
-    return texts, lines, told
+    return texts, lines, words
 
 
 def _actors_with_label(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[Row]:
@@ -249,8 +249,8 @@ def _actors_with_label(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[
     if all(len(actor["actor_id"]) <= MOST_LABEL_CHARS for actor in actors):
         return actors
     concerned = [actor for actor in actors if actor is ego or actor in met]
-    others = [actor for actor in actors if actor is not ego and actor not in met]
-    near = sorted(others, key=lambda a: (math.hypot(a["x_m"] - ego["x_m"], a["y_m"] - ego["y_m"]), a["actor_id"]))
+    other_actors = [actor for actor in actors if actor is not ego and actor not in met]
+    near = sorted(other_actors, key=lambda a: (math.hypot(a["x_m"] - ego["x_m"], a["y_m"] - ego["y_m"]), a["actor_id"]))
     return [*concerned, *near[:_MOST_OTHER_ACTORS_NAMED_IF_IDS_ARE_LONG]]
 
 

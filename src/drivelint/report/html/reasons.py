@@ -37,12 +37,12 @@ def summarise_reasons(reasons: Iterable[VerdictReason]) -> str:
 
     Among reasons of equal length, the alphabetically first is chosen, so that the order of the rows does not matter.
     """
-    first, *others = sorted(set(reasons), key=lambda reason: (len(reason.text), reason.text, reason.kind))
-    alike = sum(reason.kind == first.kind for reason in others)
+    first, *other_reasons = sorted(set(reasons), key=lambda reason: (len(reason.text), reason.text, reason.kind))
+    alike = sum(reason.kind == first.kind for reason in other_reasons)
     more = [f"{alike} similar"] if alike else []
-    more += [plural(len(others) - alike, "other reason")] if len(others) > alike else []
-    shown = f"{first.text.removesuffix('.')} (and {' and '.join(more)})" if more else first.text
-    return shown[:1].upper() + shown[1:]
+    more += [plural(len(other_reasons) - alike, "other reason")] if len(other_reasons) > alike else []
+    text = f"{first.text.removesuffix('.')} (and {' and '.join(more)})" if more else first.text
+    return text[:1].upper() + text[1:]
 
 
 def can_missing_data_be_provided(code: str) -> bool:
@@ -58,18 +58,18 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[st
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
     rows = counts.distinct_rows(counts.undecided_verdicts(verdicts), keys)
     groups = counts.group_rows(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
-    found = [
+    entries = [
         {
             "verdict": verdict,
-            "why": summarise_reasons(verdict_reason(row) for row in told),
-            "provide": can_missing_data_be_provided(told[0]["reason_code"]),
+            "why": summarise_reasons(verdict_reason(row) for row in group),
+            "provide": can_missing_data_be_provided(group[0]["reason_code"]),
             "rules": [
                 (titles.get(rule, rule), "#" + anchor("rule", rule))
-                for rule in sorted({row["rule_id"] for row in told})
+                for rule in sorted({row["rule_id"] for row in group})
             ],
-            "n": sum(row["count_all"] for row in told),
-            "n_drives": len({row["drive_id"] for row in told}),
+            "n": sum(row["count_all"] for row in group),
+            "n_drives": len({row["drive_id"] for row in group}),
         }
-        for (verdict, _), told in groups.items()
+        for (verdict, _), group in groups.items()
     ]
-    return sorted(found, key=lambda r: (r["verdict"], not r["provide"], -r["n"], r["why"]))[:MAX_REASONS]
+    return sorted(entries, key=lambda r: (r["verdict"], not r["provide"], -r["n"], r["why"]))[:MAX_REASONS]

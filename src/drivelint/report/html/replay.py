@@ -39,7 +39,7 @@ def replays(
     `a`: actor -> times, x, y (cm from the map's origin) and heading (centirad), each as its first value and then differences;
     `s`: ego -> time -> actor -> SVG path of its danger space in the drawn units of `road`.
     """
-    told: dict[str, Markup] = {}
+    by_drive: dict[str, Markup] = {}
     n = 0
     for drive_id, rows in group_rows(scenes, lambda scene: scene["drive_id"]).items():
         start = starts.get(drive_id) or 0
@@ -61,8 +61,8 @@ def replays(
                     )
                     for ring in around
                 }
-        told[drive_id] = _json({"a": actors, "s": rings})
-    return told
+        by_drive[drive_id] = _json({"a": actors, "s": rings})
+    return by_drive
 
 
 def _positions_by_actor(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[float, float, float]]]:

@@ -65,8 +65,8 @@ class DrawnLanes:
         self.origin = (0.0, 0.0) if points is None else tuple(float(v) for v in np.round(points.mean(axis=0)))
         self._tile = {lane["lanelet_id"]: self._tile_name(lane) for lane in lanes}
         ends = [(lane[side][:-1], lane[side][1:]) for lane in lanes if lane["drivable"] for side in ("left", "right")]
-        none = np.empty((0, 2))
-        self._a, self._b = (np.concatenate([e[i] for e in ends]) if ends else none for i in (0, 1))
+        no_points = np.empty((0, 2))
+        self._a, self._b = (np.concatenate([e[i] for e in ends]) if ends else no_points for i in (0, 1))
 
     def to_drawn_units(self, xy: Points) -> Points:
         """Return map points, given in metres, in drawn units."""
@@ -105,8 +105,8 @@ class DrawnLanes:
                 "road": self._area_paths(lanes, drivable=True),
                 "beside": self._area_paths(lanes, drivable=False),
                 "marks": [
-                    (kind, "".join(line for tile, what, line in marks if (tile, what) == (name, kind)))
-                    for kind in sorted({what for tile, what, _ in marks if tile == name})
+                    (kind, "".join(line for tile, mark_kind, line in marks if (tile, mark_kind) == (name, kind)))
+                    for kind in sorted({mark_kind for tile, mark_kind, _ in marks if tile == name})
                 ],
                 "arrows": "".join(arrow for lane in lanes for arrow in self._arrow_paths(lane)),
             }
@@ -121,7 +121,7 @@ class DrawnLanes:
 
     def _markings(self) -> list[tuple[str, str, str]]:
         """Return each bound once, as tile, kind and path. Kinds: solid, broken, and edge (a kerb, or a bound of unknown kind)."""
-        seen: set[frozenset[tuple[float, float]]] = set()
+        drawn_ends: set[frozenset[tuple[float, float]]] = set()
         marks = []
         # bounds inside a junction are not painted on the road
         for lane in (lane for lane in self._lanes if not lane["in_junction"]):
@@ -129,8 +129,8 @@ class DrawnLanes:
                 line: Points = lane[side]
                 ends = frozenset((round(float(x) * 2) / 2, round(float(y) * 2) / 2) for x, y in (line[0], line[-1]))
                 kind = _drawn_marking(lane[f"{side}_marking"], drivable=lane["drivable"])
-                if kind and ends not in seen:
-                    seen.add(ends)
+                if kind and ends not in drawn_ends:
+                    drawn_ends.add(ends)
                     marks.append(
                         (self._tile[lane["lanelet_id"]], kind, polyline_path(np.rint(self.to_drawn_units(line))))
                     )

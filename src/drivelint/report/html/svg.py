@@ -68,8 +68,8 @@ class Axis(NamedTuple):
 
 def axis_around(values: Iterable[float], drawn_start: float, drawn_end: float) -> Axis:
     """Return an axis that shows all values, with a margin on both sides. It is drawn from `drawn_start` to `drawn_end`."""
-    found = list(values)
-    low, high = min(found), max(found)
+    numbers = list(values)
+    low, high = min(numbers), max(numbers)
     pad = (high - low) * _MARGIN_SHARE or max(abs(high) * 0.1, 0.5)
     return Axis(low - pad, high + pad, drawn_start, drawn_end)
 
@@ -81,8 +81,8 @@ def axis_for_deciding_values(
 
     The axis shows all values, unless their range is so wide that the deciding values would be drawn on top of each other.
     """
-    found, core = list(values), list(deciding)
-    whole = axis_around([*found, *core], drawn_start, drawn_end)
+    numbers, core = list(values), list(deciding)
+    whole = axis_around([*numbers, *core], drawn_start, drawn_end)
     if not core:
         return whole, []
     span = max(max(core) - min(core), _LEAST_DECIDING_SPAN_SHARE * (whole.high - whole.low))
@@ -92,7 +92,7 @@ def axis_for_deciding_values(
         max(whole.low, min(core) - _CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES * span),
         min(whole.high, max(core) + _CUT_AXIS_SPANS_BEYOND_DECIDING_VALUES * span),
     )
-    return Axis(low, high, drawn_start, drawn_end), [v for v in (min(found), max(found)) if not low <= v <= high]
+    return Axis(low, high, drawn_start, drawn_end), [v for v in (min(numbers), max(numbers)) if not low <= v <= high]
 
 
 def round_step(value: float) -> float:

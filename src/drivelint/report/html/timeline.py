@@ -105,10 +105,10 @@ def timelines(
     gate).
     """
     clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
-    found = group_rows(findings, lambda row: row["ego_id"])
+    findings_by_ego = group_rows(findings, lambda row: row["ego_id"])
     return [
-        _timeline(told, found.get(ego, []), rules, filter_key_of_anchor, clock)
-        for ego, told in group_rows(verdicts, lambda row: row["ego_id"]).items()
+        _timeline(ego_verdicts, findings_by_ego.get(ego, []), rules, filter_key_of_anchor, clock)
+        for ego, ego_verdicts in group_rows(verdicts, lambda row: row["ego_id"]).items()
     ]
 
 
@@ -121,24 +121,24 @@ def _timeline(
 ) -> Timeline:
     """Return the timeline of one ego."""
     of: Callable[[Row], tuple[str, str | None]] = itemgetter("rule_id", "profile")
-    ego, found = verdicts[0]["ego_id"], group_rows(findings, of)
+    ego, findings_by_key = verdicts[0]["ego_id"], group_rows(findings, of)
     rows: list[TimelineRow] = []
     folded: dict[tuple[str, tuple[str, ...]], dict[tuple[str, str], set[VerdictReason]]] = {}
-    for key, told in group_rows(verdicts, of).items():
+    for key, group in group_rows(verdicts, of).items():
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
-        worst = min((row["verdict"] for row in told), key=_VERDICTS_WORST_FIRST.index)
-        if worst == "not_applicable" or all(_is_unknown_for_lack_of_data(row) for row in told):
-            reason = verdict_reason(told[0])
+        worst = min((row["verdict"] for row in group), key=_VERDICTS_WORST_FIRST.index)
+        if worst == "not_applicable" or all(_is_unknown_for_lack_of_data(row) for row in group):
+            reason = verdict_reason(group[0])
             folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
             continue
-        marks = [_finding_mark(row, filter_key_of_anchor, clock) for row in found.get(key, [])]
-        near = [_near_miss_mark(row, clock) for row in told if row["near_miss"]]
+        marks = [_finding_mark(row, filter_key_of_anchor, clock) for row in findings_by_key.get(key, [])]
+        near = [_near_miss_mark(row, clock) for row in group if row["near_miss"]]
         stands = sorted(
-            {filter_key_of_anchor.get(anchor("finding", row["finding_id"]), "") for row in found.get(key, [])}
+            {filter_key_of_anchor.get(anchor("finding", row["finding_id"]), "") for row in findings_by_key.get(key, [])}
         )
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
-        rows.append(TimelineRow(rule_id, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
+        rows.append(TimelineRow(rule_id, rule["title"], profile, worst, keys, _bands(group, clock), marks + near))
     rows.sort(
         key=lambda lane: (_VERDICTS_WORST_FIRST.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"]))
     )
@@ -165,9 +165,13 @@ def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[Folde
     """Return the folded rules that all egos share, and the timelines without these rules."""
     common = {(f.verdict, f.kind): f.reasons for f in ego_timelines[0].folded} if ego_timelines else {}
     for t in ego_timelines[1:]:
-        mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
+        ego_reasons = {(f.verdict, f.kind): f.reasons for f in t.folded}
         common = {
-            key: {rule: reasons | mine[key][rule] for rule, reasons in why.items() if rule in mine.get(key, {})}
+            key: {
+                rule: reasons | ego_reasons[key][rule]
+                for rule, reasons in why.items()
+                if rule in ego_reasons.get(key, {})
+            }
             for key, why in common.items()
         }
     common = {key: why for key, why in common.items() if why}

@@ -42,13 +42,13 @@ def worst_moment(
     """
     if not lines:
         return None
-    line = next((each for each in lines if each.standing is None or each.standing.is_gating), lines[0])
+    line = next((entry for entry in lines if entry.standing is None or entry.standing.is_gating), lines[0])
     if line.kind == "near":
         line = lines[0]
     row, at = line.row, incident_key(line.row)
     drive, scene = drives[row["drive_id"]], evidence.scenes.get(at)
     start_ns = drive["t_start_ns"] or 0
-    along = [each for each in lines if incident_key(each.row) == at and each.rule["rule_id"] != row["rule_id"]]
+    along = [entry for entry in lines if incident_key(entry.row) == at and entry.rule["rule_id"] != row["rule_id"]]
     touched = line.kind == "fail" and CONTACT_TAG in line.rule["tags"]
     return {
         "line": line,
@@ -68,7 +68,9 @@ def worst_moment(
         "also": [
             (
                 how,
-                list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_MOST_OTHER_RULE_TITLES],
+                list(dict.fromkeys(title(entry.rule) for entry in along if entry.kind == kind))[
+                    :_MOST_OTHER_RULE_TITLES
+                ],
             )
             for kind, how, title in (
                 ("fail", "also", breach_title),
@@ -82,8 +84,8 @@ def worst_moment(
 
 def finding_key(row: Row) -> tuple[Any, ...]:
     """Return the key of a finding or near miss; its row of the table `course` has the same key."""
-    told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
-    return (row.get("finding_id"), *told)
+    values = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
+    return (row.get("finding_id"), *values)
 
 
 def _argument_for_explain_command(row: Row) -> str:
