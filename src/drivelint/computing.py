@@ -29,12 +29,12 @@ class ProcessorClock:
 
     def _cpu_s_of_other_threads(self) -> dict[int, float]:
         """Return thread number -> processor seconds of each other Python thread; empty if the system does not report them."""
-        found: dict[int, float] = {}
+        seconds: dict[int, float] = {}
         for thread in threading.enumerate():
             if (number := thread.native_id) is not None and number != self._thread:
                 with suppress(OSError, ValueError, IndexError):
-                    found[number] = int(_read_system_file(f"/proc/self/task/{number}/schedstat").split()[0]) / 1e9
-        return found
+                    seconds[number] = int(_read_system_file(f"/proc/self/task/{number}/schedstat").split()[0]) / 1e9
+        return seconds
 
 
 def resident_bytes(process: int | None = None) -> int:

@@ -83,7 +83,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     """
     paths = expand_traces([request.trace])
     if len(paths) != 1:
-        names = name_list([each.name for each in paths])
+        names = name_list([log.name for log in paths])
         raise UsageError(
             f"{request.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
         )
@@ -97,8 +97,8 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:
-        told = QualityFinding(CLIP_CHECK_ID, "info", _clip_source_sentence(trace, request.clip))
-        trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), told)
+        finding = QualityFinding(CLIP_CHECK_ID, "info", _clip_source_sentence(trace, request.clip))
+        trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), finding)
     if request.map_offset is not None:
         x, y = request.map_offset
         trace = replace(_with_data_log_values(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
@@ -140,8 +140,8 @@ def _refuse_to_overwrite_others_files(source: Path, out: Path, target: Path) -> 
         return
     if not out.is_dir():
         raise UsageError(f"--out {out} is a file: name a folder")
-    ours = [out / name for name in CANONICAL_FILES] if target == out else [target]
-    if out.samefile(source) or any(file.exists() and file.samefile(source) for file in ours):
+    targets = [out / name for name in CANONICAL_FILES] if target == out else [target]
+    if out.samefile(source) or any(file.exists() and file.samefile(source) for file in targets):
         raise UsageError(f"--out {out}: that would overwrite the log itself: choose another folder")
     if target != out:
         if target.exists() and not _is_our_mcap(target):
@@ -160,9 +160,9 @@ def _is_our_mcap(path: Path) -> bool:
 
 def _notes_on_check_options(request: ConvertRequest) -> list[str]:
     """Return a note for each given option that a converted log cannot contain."""
-    given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
+    options = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
     unset = {field.name: field.default for field in fields(DriveInput)}
-    names = ["--" + name.replace("_", "-") for name, value in given.items() if value != unset[name]]
+    names = ["--" + name.replace("_", "-") for name, value in options.items() if value != unset[name]]
     return [f"{name} is not part of the converted log: give it in every check" for name in names]
 
 
@@ -176,11 +176,11 @@ def _with_data_log_values(trace: Trace, **values: str | float) -> Trace:
 
 def _map_to_write(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the map to write (the user's, else the log's own), the trace in the map's frame, and notes. Errors: as `convert`."""
-    library, own = MapLibrary(request), trace.embedded_map
+    library, embedded = MapLibrary(request), trace.embedded_map
     if library.uses_map_in_log(trace) or (road := library.find_source(trace)) is None:
-        if own is None:
+        if embedded is None:
             return None, trace, list(library.doubts_on_map(trace, None).values())
-        return _embedded_map_to_write(request, trace, MapSource(MAP_FILE, own))
+        return _embedded_map_to_write(request, trace, MapSource(MAP_FILE, embedded))
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         raise UsageError(why)
     # a wrong map is refused now, not when the converted log is checked
@@ -266,5 +266,5 @@ def summary_text(trace: ConvertedTrace) -> str:
         f"drivelint check {shlex.quote(str(trace.path))}{ego}{'' if trace.map_name else ' --map MAP'}"
         f"{''.join(f' {shlex.quote(word)}' for word in trace.check_options)} --out results"
     )
-    said = f"{trace.path}: {files}{amount}, {trace.n_states} states of {trace.n_actors} actors{road}"
-    return f"{one_line(said)}\n{one_line(f'check it, without a mapping, with: {command}')}"
+    summary = f"{trace.path}: {files}{amount}, {trace.n_states} states of {trace.n_actors} actors{road}"
+    return f"{one_line(summary)}\n{one_line(f'check it, without a mapping, with: {command}')}"

@@ -49,10 +49,10 @@ def _refuse_to_overwrite_others_file(path: Path) -> None:
         return
     try:
         with path.open("rb") as file:
-            ours = _GENERATOR in file.read(_HEAD_BYTES)
+            is_of_demo = _GENERATOR in file.read(_HEAD_BYTES)
     except OSError:
-        ours = False
-    if not ours:
+        is_of_demo = False
+    if not is_of_demo:
         raise UsageError(f"{path} was not written by this demo, so it stays as it is: choose another folder")
 
 

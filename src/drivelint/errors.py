@@ -51,7 +51,9 @@ class DriveLintError(Exception):
             return traceback.format_exception(self)
         self._is_shown = True
         # a text from a log may contain control characters of a terminal
-        line = "".join(each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in str(self))
+        line = "".join(
+            letter if letter.isprintable() or letter == "\n" else ascii(letter)[1:-1] for letter in str(self)
+        )
         return [f"{type(self).__name__}: {line} (%tb shows the traceback)"]
 
     @property
@@ -84,8 +86,8 @@ class ProblemLinesError(DriveLintError):
         """Return the message, with no more than `MAX_PROBLEM_LINES` lines; the middle of a very long line is left out."""
         lines = Exception.__str__(self).split("\n")
         more = len(lines) - MAX_PROBLEM_LINES
-        told = [_shortened(line) for line in lines[:MAX_PROBLEM_LINES]]
-        return "\n".join(told if more <= 0 else [*told, f"... and {more} more problems"])
+        shortened = [_shortened(line) for line in lines[:MAX_PROBLEM_LINES]]
+        return "\n".join(shortened if more <= 0 else [*shortened, f"... and {more} more problems"])
 
 
 class SceneFileError(UsageError, ProblemLinesError):

@@ -45,9 +45,9 @@ def cache_folder() -> Path | None:
     """Return the cache folder; None: nothing is cached."""
     from platformdirs import user_cache_path
 
-    given = os.environ.get("DRIVELINT_CACHE_DIR")
-    if given is not None:
-        return Path(given) if given else None
+    folder = os.environ.get("DRIVELINT_CACHE_DIR")
+    if folder is not None:
+        return Path(folder) if folder else None
     with suppress(OSError, RuntimeError):  # the user has no home folder
         return user_cache_path("drivelint")
     return None
@@ -57,15 +57,15 @@ def cache_folder() -> Path | None:
 def code_and_version_hash(code_globs: tuple[str, ...]) -> str:
     """Return the hash of what all facts depend on: versions, the files in `code_globs`, declarations and macros."""
     versions = [version(name) for name in ("duckdb", "jinja2", "msgspec")]
-    said = sha256(" ".join([sys.version, *versions]).encode())
+    digest = sha256(" ".join([sys.version, *versions]).encode())
     package = Path(__file__).parent
     files = [file for pattern in code_globs for file in package.glob(pattern)]
     files += [*folder("schemas").glob("*"), *(folder("queries") / "macros").glob("*")]
     files += (folder("queries") / "library").glob("*/*.sql")
     for file in sorted(file for file in files if file.is_file()):
         content = file.read_bytes()
-        said.update(f"{file.name} {len(content)}\0".encode() + content)
-    return said.hexdigest()
+        digest.update(f"{file.name} {len(content)}\0".encode() + content)
+    return digest.hexdigest()
 
 
 class Memo(Generic[T]):
@@ -80,8 +80,8 @@ class Memo(Generic[T]):
 
     def find_or_compute(self, text: str, compute: Callable[[], T]) -> T:
         """Return the fact about a text; if it is not stored, compute it by `compute`. Errors of `compute` are not stored."""
-        known = self.get(text)
-        return self.put(text, compute()) if known is None else known
+        value = self.get(text)
+        return self.put(text, compute()) if value is None else value
 
     def get(self, text: str) -> T | None:
         """Return the fact about a text; None: it is not stored."""
@@ -108,7 +108,7 @@ class Memo(Generic[T]):
             with NamedTemporaryFile(dir=file.parent, prefix=f".{self._name}-", delete=False) as part:
                 part.write(msgspec.msgpack.encode(facts, enc_hook=str))
             Path(part.name).replace(file)
-            files = sorted(file.parent.glob(f"{self._name}-*.msgpack"), key=lambda each: each.stat().st_mtime_ns)
+            files = sorted(file.parent.glob(f"{self._name}-*.msgpack"), key=lambda path: path.stat().st_mtime_ns)
             for old in files[: -1 - MOST_KEPT_FILES_OF_OTHER_VERSIONS]:
                 old.unlink()
 

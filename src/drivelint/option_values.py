@@ -34,10 +34,10 @@ def parse_memory(text: str | None) -> int | None:
         return DEFAULT_MEMORY_BYTES
     if text.strip().lower() == "none":
         return None
-    said = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT])(i?)B\s*", text, re.IGNORECASE)
-    if said is None:
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT])(i?)B\s*", text, re.IGNORECASE)
+    if match is None:
         raise UsageError(f"--memory {text!r}: write a size such as 512MB or 1.5GB, or none")
-    number, prefix, binary = said.groups()
+    number, prefix, binary = match.groups()
     size = int(float(number) * (1024 if binary else 1000) ** ("KMGT".index(prefix.upper()) + 1))
     if size < LEAST_MEMORY_BYTES:
         raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY_BYTES // 10**6}MB")
@@ -76,10 +76,10 @@ def parse_shard(text: str | None) -> tuple[int, int] | None:
     """Read I/N, the I-th of N parts. Errors: `UsageError`."""
     if text is None:
         return None
-    said = re.fullmatch(r"(\d+)/(\d+)", text.strip())
-    if said is None or not 1 <= int(said[1]) <= int(said[2]):
+    match = re.fullmatch(r"(\d+)/(\d+)", text.strip())
+    if match is None or not 1 <= int(match[1]) <= int(match[2]):
         raise UsageError(f"--shard {text!r}: write which of how many parts, such as 1/3")
-    return int(said[1]), int(said[2])
+    return int(match[1]), int(match[2])
 
 
 def _comma_separated_numbers(text: str) -> tuple[float, ...]:

@@ -101,8 +101,8 @@ def check(
         run.RunRules.from_options(settings)  # wrong rules or parameters are refused here, once
         paths, _ = run.named_logs(settings)
         if len(parts := _cut_into_parts(paths, jobs)) > 1:
-            joined = _judge_in_workers(settings, paths, parts, progress, interruption or Interruption())
-            return run.join_parts(paths, joined, on_nothing_judged)
+            judged_parts = _judge_in_workers(settings, paths, parts, progress, interruption or Interruption())
+            return run.join_parts(paths, judged_parts, on_nothing_judged)
     return run.check(settings, progress, interruption, unstoppable_rule_handler, on_nothing_judged)
 
 
@@ -115,12 +115,12 @@ def _judge_in_workers(
 ) -> list[JudgedLogs]:
     """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
-    own = replace(settings, memory=memory, threads=max(1, core_count() // len(parts)))
+    worker_settings = replace(settings, memory=memory, threads=max(1, core_count() // len(parts)))
     recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING_STAGE, len(paths))
     listener = _DisplayForWorkers(progress, len(paths))
-    workers = [_Worker(_PartOfLogs(own, part, len(paths), is_output, {}), listener) for part in parts]
+    workers = [_Worker(_PartOfLogs(worker_settings, part, len(paths), is_output, {}), listener) for part in parts]
     try:
         for worker in workers:
             worker.start()
@@ -135,9 +135,9 @@ def _judge_in_workers(
             worker.stop()
     ended = [worker.ended for worker in workers if worker.ended is not None]
     if recording is not None:
-        for each in ended:
-            recording.add(each.inputs)
-    return _without_duplicate_drives([each.judged_logs for each in ended])
+        for outcome in ended:
+            recording.add(outcome.inputs)
+    return _without_duplicate_drives([outcome.judged_logs for outcome in ended])
 
 
 def _cut_into_parts(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
@@ -148,40 +148,41 @@ def _cut_into_parts(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
             sizes.append(sum(size for _, size, _ in file_names_sizes_and_change_times(path)))
             continue
         sizes.append(0)
-    whole, done = sum(sizes) + len(paths), 0
+    whole, size_before = sum(sizes) + len(paths), 0
     parts: dict[int, list[Path]] = defaultdict(list)
     for path, size in zip(paths, sizes, strict=True):
-        middle = done + (size + 1) / 2
+        middle = size_before + (size + 1) / 2
         parts[min(max_parts - 1, int(max_parts * middle / whole))].append(path)
-        done += size + 1
+        size_before += size + 1
     return [parts[no] for no in sorted(parts)]
 
 
 def _without_duplicate_drives(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
     """Return the parts without drives that an earlier part has judged: logs with the same name and content count once."""
-    judged: set[str] = set()
-    found: list[JudgedLogs] = []
+    judged_ids: set[str] = set()
+    unique_parts: list[JudgedLogs] = []
     for part in parts:
         drives = part.result.drives
-        mine = set(drives.filter(pc.equal(drives["status"], "judged"))["drive_id"].to_pylist())
-        copies = sorted(mine & judged)
-        found.append(_without_drives(part, copies) if copies else part)
-        judged |= mine
-    return found
+        ids_of_part = set(drives.filter(pc.equal(drives["status"], "judged"))["drive_id"].to_pylist())
+        copies = sorted(ids_of_part & judged_ids)
+        unique_parts.append(_without_drives(part, copies) if copies else part)
+        judged_ids |= ids_of_part
+    return unique_parts
 
 
 def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     """Return a part without these drives; the only note on each of their logs is that it is a duplicate."""
     result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
     tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *TABLE_OF_PICTURE_FILE)}
-    others = {
+    remaining = {
         name: table.filter(pc.invert(pc.is_in(table["drive_id"], value_set=pa.array(drives, pa.string()))))
         for name, table in tables.items()
         if "drive_id" in table.column_names
     }
-    told = [note_on_repeated_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
-    kept = [note for note in part.notes if note.path not in {each.path for each in told}]
-    return replace(part, result=replace(result, **others), notes=(*kept, *told))
+    repeated = [note_on_repeated_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    repeated_paths = {note.path for note in repeated}
+    notes = [note for note in part.notes if note.path not in repeated_paths]
+    return replace(part, result=replace(result, **remaining), notes=(*notes, *repeated))
 
 
 class _DisplayForWorkers:
@@ -355,7 +356,7 @@ def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interr
     )
     with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         run_rules = run.RunRules.from_options(part.settings)
-        judged = run.judge_logs(
+        judged_logs = run.judge_logs(
             part.settings,
             run_rules,
             part.paths,
@@ -366,7 +367,7 @@ def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interr
             unstoppable_rule_handler=handler,
         )
     return _PartOutcome(
-        judged,
+        judged_logs,
         None if recording is None or part.limits_of_unstoppable_rules else recording.end_recording_and_return_inputs(),
     )
 

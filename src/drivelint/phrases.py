@@ -27,12 +27,12 @@ _EGO_ID: Final = re.compile(r"ego(?![^\W_])|ego\d", re.IGNORECASE)
 
 def escape_invisible(text: str) -> str:
     """Return a text, which may come from a log, with its invisible characters replaced by their codes, such as `\\x1b`."""
-    return _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
+    return _INVISIBLE.sub(lambda match: match[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
 
 
 def terminal_safe(text: str) -> str:
     """Return a text, which may come from a log, made safe for a terminal: control characters as codes, no build-server commands."""
-    return _BUILD_SERVER_COMMAND_PATTERN.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
+    return _BUILD_SERVER_COMMAND_PATTERN.sub(lambda match: f"{match[0]}\\", escape_invisible(text))
 
 
 def one_line(text: str) -> str:
@@ -47,7 +47,7 @@ def terminal_safe_line(text: str) -> str:
 
 def terminal_safe_json(text: str) -> str:
     """Return JSON with the same meaning that is safe for a terminal (see `terminal_safe`)."""
-    return _TERMINAL_UNSAFE_PATTERN_IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _TERMINAL_UNSAFE_PATTERN_IN_JSON.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, prefix: str = "") -> str:
@@ -56,15 +56,15 @@ def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, prefix: 
     `prefix` is put before the word, in place of quotes.
     """
     words = list(dict.fromkeys(known_words))
-    meant = nearest_word(word, words, cutoff=cutoff)
-    if meant is None:
+    nearest = nearest_word(word, words, cutoff=cutoff)
+    if nearest is None:
         return f"known are {', '.join(words)}"
-    return f"did you mean {prefix}{meant}?" if prefix else f"did you mean {meant!r}?"
+    return f"did you mean {prefix}{nearest}?" if prefix else f"did you mean {nearest!r}?"
 
 
 def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) -> str | None:
     """Return the most similar known word, ignoring case; None: none is similar."""
-    words = {each.casefold(): each for each in known_words}
+    words = {known_word.casefold(): known_word for known_word in known_words}
     near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
     return words[near[0]] if near else None
 
@@ -72,16 +72,16 @@ def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) 
 def path_hint(path: Path) -> str:
     """Return "did you mean 'x'?" for a missing path, if a file or folder beside its first missing part has a similar name; else ''."""
     try:
-        missing = next((part for part in (*reversed(path.parents), path) if not part.exists()), path)
-        beside = sorted(each.name for each in missing.parent.iterdir())
+        missing_part = next((part for part in (*reversed(path.parents), path) if not part.exists()), path)
+        beside = sorted(entry.name for entry in missing_part.parent.iterdir())
     except (OSError, ValueError):  # a name may be too long, or the folder unreadable
         return ""
-    near = nearest_word(missing.name, beside)
+    near = nearest_word(missing_part.name, beside)
     if near is None:
         return ""
-    meant = missing.with_name(near)
-    below = meant / path.relative_to(missing)
-    return f"did you mean {escape_invisible(str(below if below.exists() else meant))!r}?"
+    candidate = missing_part.with_name(near)
+    below = candidate / path.relative_to(missing_part)
+    return f"did you mean {escape_invisible(str(below if below.exists() else candidate))!r}?"
 
 
 def name_list(names: Sequence[str], max_names: int = 5) -> str:

@@ -77,7 +77,7 @@ class CheckOptions(JudgingOptions):
         cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None
     ) -> CheckOptions:
         """Return the options of a check of these logs, with the judging options of `options` and without its other fields."""
-        return cls(traces, out, **{each.name: getattr(options, each.name) for each in fields(JudgingOptions)})
+        return cls(traces, out, **{field.name: getattr(options, field.name) for field in fields(JudgingOptions)})
 
 
 class RunRules(NamedTuple):
@@ -91,9 +91,9 @@ class RunRules(NamedTuple):
     @classmethod
     def from_options(cls, settings: CheckOptions) -> RunRules:
         """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
-        known = catalogue.load_rules(settings.rules_dirs)
-        rules = catalogue.select_rules(known, settings.rules, settings.ignore, named_ids=settings.named_rules)
-        required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
+        rules_by_id = catalogue.load_rules(settings.rules_dirs)
+        rules = catalogue.select_rules(rules_by_id, settings.rules, settings.ignore, named_ids=settings.named_rules)
+        required = catalogue.required_rules(rules_by_id, rules, settings.require, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         if (settings.margins or settings.keep_db) and settings.out is None:
@@ -135,7 +135,7 @@ def check(
     run_rules = RunRules.from_options(settings)
     paths, refused_logs = named_logs(settings)
     progress.stage(CHECKING_STAGE, len(paths))
-    judged = judge_logs(
+    judged_logs = judge_logs(
         settings,
         run_rules,
         paths,
@@ -146,7 +146,7 @@ def check(
         unstoppable_rule_handler=unstoppable_rule_handler,
         library=library,
     )
-    return join_parts(paths, [judged], on_nothing_judged)
+    return join_parts(paths, [judged_logs], on_nothing_judged)
 
 
 def judge_logs(
@@ -218,20 +218,20 @@ def judge_logs(
             ),
         )
         ids: dict[Path, str] = {}
-        read = _with_reading_progress(_read_logs(paths, settings, library), len(paths), progress)
-        read = takewhile(lambda _item: not interruption.requested, read)
+        incoming = _with_reading_progress(_read_logs(paths, settings, library), len(paths), progress)
+        incoming = takewhile(lambda _item: not interruption.requested, incoming)
         try:
             with suppress(InterruptedRunError):
-                for batch in cut_batches(read):
+                for batch in cut_batches(incoming):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
                     _judge_batch(session, batch, refused_logs, progress=progress, notes=notes, limits=limits)
             _judge_copies(session, progress, memory)
         finally:
             session.close()
         # of two logs with the same content, the first determines the path and the options
-        judged = [(name, path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids]
-        done = {path for _, path in judged} | {log.path for log in refused_logs}
-        missed = sorted(set(paths) - done) if interruption.requested else []
+        judged_drives = [(name, path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids]
+        finished_paths = {path for _, path in judged_drives} | {log.path for log in refused_logs}
+        missed = sorted(set(paths) - finished_paths) if interruption.requested else []
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused_logs]
         unjudged += [collect.unjudged_drive(path.stem, path.name, _INTERRUPTED_REASON) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
@@ -249,8 +249,12 @@ def judge_logs(
             interrupted=bool(missed),
             run_options=RunRequest.from_options(
                 settings,
-                {name: str(path) for name, path in judged},
-                {name: settings.manifest_options[path] for name, path in judged if path in settings.manifest_options},
+                {name: str(path) for name, path in judged_drives},
+                {
+                    name: settings.manifest_options[path]
+                    for name, path in judged_drives
+                    if path in settings.manifest_options
+                },
             ),
         )
         if cameras is not None and cameras.topics_by_drive:
@@ -282,13 +286,13 @@ def join_parts(
     statuses = result.drives["status"].to_pylist()
     if result.interrupted and "judged" not in statuses:
         raise NothingJudgedError
-    refused = [each for part in parts for each in part.refused_logs]
-    if len(refused) >= len(statuses):
+    refusals = [refusal for part in parts for refusal in part.refused_logs]
+    if len(refusals) >= len(statuses):
         if on_nothing_judged is not None:
             on_nothing_judged(result)
-        first = refused[0].error
-        many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
-        raise first if len(refused) == 1 else many
+        first = refusals[0].error
+        error = TraceError(f"none of {len(refusals)} logs could be judged; the first: {first}")
+        raise first if len(refusals) == 1 else error
     return result
 
 
@@ -315,9 +319,9 @@ def _read_logs(
     paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None
 ) -> Iterator[Drive | RefusedLog]:
     """Yield every log, read with the options that apply to it; logs with the same options are read together."""
-    for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
+    for options, logs in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
         maps = library if library is not None and options is settings else MapLibrary(options)
-        yield from read_drives(mine, options.ingest_options(), maps)
+        yield from read_drives(logs, options.ingest_options(), maps)
 
 
 def _with_reading_progress(
@@ -325,9 +329,9 @@ def _with_reading_progress(
 ) -> Iterator[Drive | RefusedLog]:
     """Yield the logs, and show which log is read next: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
-    for done, item in enumerate(drives, 1):
+    for n_read, item in enumerate(drives, 1):
         yield item
-        progress.doing(f"reading {min(done + 1, n)}/{n}")
+        progress.doing(f"reading {min(n_read + 1, n)}/{n}")
 
 
 def _missing_map_messages(drive: Drive) -> list[str]:

@@ -81,13 +81,17 @@ def read_settings(
     Errors: `UsageError`, which names the file, for bad TOML, an unknown key (with the most similar one), or a value of a wrong type.
     """
     values: dict[str, Any] = {}
-    for key, said in settings_table(file).items():
+    for key, value_of_file in settings_table(file).items():
         if key == "waiver":
             continue  # read by `drivelint.gate.waivers`
         if key not in known_options:
             raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(known_options))}")
         name, repeatable = known_options[key]
-        value = _environment_assignments(said, file) if key == "env" and isinstance(said, dict) else said
+        value = (
+            _environment_assignments(value_of_file, file)
+            if key == "env" and isinstance(value_of_file, dict)
+            else value_of_file
+        )
         texts = isinstance(value, list) and all(isinstance(item, str) for item in value)
         if not (texts if repeatable else isinstance(value, str | bool | int | float)):
             raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
@@ -99,7 +103,7 @@ def read_settings(
 def _resolve_paths(folder: Path, value: Any, *, is_path: bool) -> Any:
     """Return a path, or each path of a list, relative to `folder`; without `is_path`, only if such a file is there."""
     if isinstance(value, list):
-        return [_resolve_paths(folder, each, is_path=is_path) for each in value]
+        return [_resolve_paths(folder, item, is_path=is_path) for item in value]
     if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):
         return value
     return str(folder / value)

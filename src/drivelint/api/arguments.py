@@ -39,20 +39,20 @@ def _is_path_or_iterable(value: object) -> bool:
 
 
 _CHECK_OF_TYPE: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
-    "None": (lambda given: given is None, "None"),
-    "bool": (lambda given: isinstance(given, bool | np.bool_), "True or False"),
-    "str": (lambda given: isinstance(given, str), "a text"),
-    "int": (lambda given: isinstance(given, Integral) and not isinstance(given, bool), "a whole number"),
+    "None": (lambda value: value is None, "None"),
+    "bool": (lambda value: isinstance(value, bool | np.bool_), "True or False"),
+    "str": (lambda value: isinstance(value, str), "a text"),
+    "int": (lambda value: isinstance(value, Integral) and not isinstance(value, bool), "a whole number"),
     "float": (_is_number, "a number"),
-    "date": (lambda given: isinstance(given, date), "a date"),
+    "date": (lambda value: isinstance(value, date), "a date"),
     "AnyPath": (_is_path, "a path"),
     "Paths": (_is_path_or_iterable, "a path, or several"),
-    "Texts": (lambda given: given is None or _is_path_or_iterable(given), "a text, or several"),
+    "Texts": (lambda value: value is None or _is_path_or_iterable(value), "a text, or several"),
     "Assignments": (
-        lambda given: given is None or _is_path_or_iterable(given) or isinstance(given, Mapping),
+        lambda value: value is None or _is_path_or_iterable(value) or isinstance(value, Mapping),
         "texts KEY=VALUE, or a dictionary",
     ),
-    "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
+    "Pair": (lambda value: value is None or isinstance(value, str) or _are_numbers(value), "two numbers"),
     "tuple[float, ...]": (_are_numbers, "numbers"),
 }
 """Annotation in a signature -> test of a value, and the name of the type in messages. `require_one_of` checks `Literal` types."""
@@ -66,7 +66,9 @@ def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
     signature = inspect.signature(function)
     kinds = {name: str(parameter.annotation).split(" | ") for name, parameter in signature.parameters.items()}
     names = [
-        name for name, each in signature.parameters.items() if name != "self" and each.kind != each.POSITIONAL_ONLY
+        name
+        for name, parameter in signature.parameters.items()
+        if name != "self" and parameter.kind != parameter.POSITIONAL_ONLY
     ]
     type_names = {name: parts for name, parts in kinds.items() if set(parts) <= _CHECK_OF_TYPE.keys()}
 
@@ -77,8 +79,8 @@ def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
             raise UsageError(f"{function.__name__}() has no argument {word!r}: {hint(word, names)}")
         for name, value in signature.bind(*args, **keywords).arguments.items():
             if name in type_names and not any(_CHECK_OF_TYPE[part][0](value) for part in type_names[name]):
-                said = [_CHECK_OF_TYPE[part][1] for part in type_names[name] if part != "None"]
-                raise UsageError(f"{name}={reprlib.repr(value)}: give {' or '.join(said)}")
+                type_texts = [_CHECK_OF_TYPE[part][1] for part in type_names[name] if part != "None"]
+                raise UsageError(f"{name}={reprlib.repr(value)}: give {' or '.join(type_texts)}")
         return function(*args, **keywords)
 
     return checked_call

@@ -59,9 +59,9 @@ class AuditResult(TableSet):
         tables = {name: getattr(self._result, name) for name in ("verdicts", "findings", "drives", "rules")}
         tables["events"] = pa.Table.from_pylist(one_finding_per_event(findings.to_pylist()), schema=findings.schema)
         with open_audits(self._dest) as (con, audit, _):
-            counted = create_counted_views(con)
+            prefix = create_counted_views(con)
             tables["logs"] = con.execute(
-                f"SELECT drive_id, log, tags FROM {counted}drives ORDER BY ALL"
+                f"SELECT drive_id, log, tags FROM {prefix}drives ORDER BY ALL"
             ).to_arrow_table()
             self.notes = tuple(filter(None, [audit.warning]))
         super().__init__(tables, schema_tables=_SCHEMA_OF_TABLE)
@@ -102,7 +102,7 @@ class AuditResult(TableSet):
 
 def _rate_row(rate: rates.Rate) -> dict[str, Any]:
     """Return a rate as a row, with its estimates as structs."""
-    told = asdict(rate)
+    columns = asdict(rate)
     for name in ("per_100km", "per_hour", "per_occasion", "per_ego"):
-        told[name] = getattr(rate, name)._asdict()
-    return told
+        columns[name] = getattr(rate, name)._asdict()
+    return columns

@@ -150,10 +150,10 @@ class CheckResult(TableSet):
         `verdict` and `at` choose among several verdicts. `trace`, `map`: the new paths of the log and the map, if they were moved.
         Errors: `DriveLintError`.
         """
-        wanted = VerdictFilter(profile, _text_or_none(object), at, _text_or_none(ego), verdict)
+        verdict_filter = VerdictFilter(profile, _text_or_none(object), at, _text_or_none(ego), verdict)
         with TemporaryDirectory(prefix="drivelint-") as scratch:
             folder = self.folder or self.write(scratch)
-            return Explained(explain(ExplainRequest(name, folder, wanted, to_path(trace), to_path(map))))
+            return Explained(explain(ExplainRequest(name, folder, verdict_filter, to_path(trace), to_path(map))))
 
     @with_argument_checks
     def timeline(self, finding: str) -> Timeline:

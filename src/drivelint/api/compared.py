@@ -47,8 +47,10 @@ class Comparison:
 
     def data(self) -> dict[str, Any]:
         """Return the output of `drivelint diff --format json` as plain data."""
-        told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least_severity))
-        return told
+        document: dict[str, Any] = json.loads(
+            descriptions.to_json(self._difference, self._failing, self._least_severity)
+        )
+        return document
 
     def __repr__(self) -> str:
         return self.text
@@ -64,8 +66,8 @@ def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: Fa
     """
     (earlier, base_name), (later, name) = _load_result_and_name(base, "base"), _load_result_and_name(new, "new")
     least = later.fail_on if fail_on is None else require_one_of("fail_on", fail_on, FailOn)
-    found, failing = compare_results(earlier, later, (base_name, name), least)
-    return Comparison(found, failing, least, later.gate)
+    difference, failing = compare_results(earlier, later, (base_name, name), least)
+    return Comparison(difference, failing, least, later.gate)
 
 
 def _load_result_and_name(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:

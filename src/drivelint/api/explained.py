@@ -32,8 +32,8 @@ class Explained:
 
     def data(self) -> dict[str, Any]:
         """Return the output of `drivelint explain --format json` as plain data, with all digits of the numbers."""
-        told: dict[str, Any] = json.loads(text.to_json(self._explanation))
-        return told
+        document: dict[str, Any] = json.loads(text.to_json(self._explanation))
+        return document
 
     def __repr__(self) -> str:
         return self.text

@@ -17,9 +17,12 @@ _OPTION: Final = re.compile(
     r"(?<![\w-])(?P<command>check )?(?P<flag>--[a-z][a-z-]*)(?: (?P<metavar>[A-Z][A-Z|,]*)\b| (?=['\"\d]))?"
 )
 _KEYWORD_OF_FLAG: Final = {
-    flag: (each.name, str(not flag.startswith("--no-")) if each.type.command_line_type in {bool, bool | None} else None)
-    for each in declared_options(CheckArguments)
-    for flag in each.flags[0].split("/")
+    flag: (
+        option.name,
+        str(not flag.startswith("--no-")) if option.type.command_line_type in {bool, bool | None} else None,
+    )
+    for option in declared_options(CheckArguments)
+    for flag in option.flags[0].split("/")
 }
 """Flag of the command line -> keyword in Python, and the keyword's value if the flag has none."""
 

@@ -44,7 +44,7 @@ def preformatted_html(text: str) -> str:
 
 def summary_html(result: Result) -> str:
     """Return the summary of a result as HTML, with all text from logs escaped."""
-    found = gating_findings_worst_first(result)
+    findings = gating_findings_worst_first(result)
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     starts = result.start_times
     end = exit_status(result)
@@ -60,7 +60,7 @@ def summary_html(result: Result) -> str:
             "measured": measured_values_text(row),
             "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),
         }
-        for row in found[:MOST_LISTED_FINDINGS]
+        for row in findings[:MOST_LISTED_FINDINGS]
     ]
     return _template().render(
         verdict=replace_options_by_keywords(outcome_line(result)),
@@ -73,7 +73,7 @@ def summary_html(result: Result) -> str:
         verdicts={word.replace("_", " "): n for word, n in counts.verdict_counts(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),
-        left_out=len(found) - len(rows),
+        left_out=len(findings) - len(rows),
     )
 
 

@@ -42,5 +42,5 @@ def note_keeper(show_bar: bool) -> Iterator[NoteKeeper]:
     if not show_bar:
         yield NoteKeeper(Silent())
         return
-    with progress_bar() as shown:
-        yield NoteKeeper(shown)
+    with progress_bar() as progress:
+        yield NoteKeeper(progress)

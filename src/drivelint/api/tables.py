@@ -47,8 +47,8 @@ class Table:
 
         meanings = declarations.column_comments().get(self._schema_table, {})
         types = [str(kind) for kind in self._rows.schema.types]
-        said = [meanings.get(column, "") for column in self.columns]
-        return Table(pa.table({"column": list(self.columns), "type": types, "meaning": said}))
+        texts = [meanings.get(column, "") for column in self.columns]
+        return Table(pa.table({"column": list(self.columns), "type": types, "meaning": texts}))
 
     def __len__(self) -> int:
         return int(self._rows.num_rows)
@@ -100,10 +100,10 @@ class Table:
             import geopandas as gpd
         except ImportError as error:
             raise DriveLintError("geo() needs geopandas, which is not installed: pip install geopandas") from error
-        shown, shapes = with_geometry(self._rows, self._schema_table), GEOMETRIES_OF_TABLE[self._schema_table]
+        table, shapes = with_geometry(self._rows, self._schema_table), GEOMETRIES_OF_TABLE[self._schema_table]
         series = {
             column: gpd.GeoSeries.from_wkb(
-                shown[column].to_pylist(), crs="OGC:CRS84" if column == GEOMETRY_IN_DEGREES_COLUMN else None
+                table[column].to_pylist(), crs="OGC:CRS84" if column == GEOMETRY_IN_DEGREES_COLUMN else None
             )
             for column in shapes
         }
@@ -125,14 +125,14 @@ class Table:
 
 def _unique_names(names: Sequence[str]) -> list[str]:
     """Return unique column names: a repeated name gets a number, as DuckDB numbers the columns of a table."""
-    told: list[str] = []
+    unique: list[str] = []
     for name in names:
         n, free = 0, name
-        while free in told or (n and free in names):
+        while free in unique or (n and free in names):
             n += 1
             free = f"{name}_{n}"
-        told.append(free)
-    return told
+        unique.append(free)
+    return unique
 
 
 class TableSet:
@@ -156,10 +156,10 @@ class TableSet:
             for name, rows in self._queryable_tables().items():
                 if has_geometry and name in self._shapes:
                     con.register("_wkb", with_geometry(rows, self._shapes[name]))
-                    made = ", ".join(
-                        f"ST_GeomFromWKB({each}) AS {each}" for each in GEOMETRIES_OF_TABLE[self._shapes[name]]
+                    shapes = ", ".join(
+                        f"ST_GeomFromWKB({column}) AS {column}" for column in GEOMETRIES_OF_TABLE[self._shapes[name]]
                     )
-                    con.execute(f"CREATE TABLE {name} AS SELECT * REPLACE ({made}) FROM _wkb")
+                    con.execute(f"CREATE TABLE {name} AS SELECT * REPLACE ({shapes}) FROM _wkb")
                     con.unregister("_wkb")
                 else:
                     con.register(name, rows)

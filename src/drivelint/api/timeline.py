@@ -77,13 +77,13 @@ def timeline(result: Result, name: str) -> Timeline:
     at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
     scene = next(iter(_matching_rows(result.scenes, at)), None)
     courses = _matching_rows(result.courses, {"finding_id": row["finding_id"]})
-    course = next((each for each in courses if finding_key(each) == finding_key(row)), None)
+    course = next((candidate for candidate in courses if finding_key(candidate) == finding_key(row)), None)
     values: dict[int, dict[str, float | None]] = {}
     if scene is not None:
         _add_motion(values, scene, row["object_id"])
     if course is not None:
-        for t_ns, *told in zip(*(course[key] for key in ("t_ns", "observed", "required", "margin")), strict=True):
-            values.setdefault(t_ns, {}).update(zip(("observed", "required", "margin"), told, strict=True))
+        for t_ns, *numbers in zip(*(course[key] for key in ("t_ns", "observed", "required", "margin")), strict=True):
+            values.setdefault(t_ns, {}).update(zip(("observed", "required", "margin"), numbers, strict=True))
     times = sorted(values)
     table = pa.table(
         {
@@ -92,26 +92,26 @@ def timeline(result: Result, name: str) -> Timeline:
             **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _VALUE_COLUMNS},
         }
     )
-    drawn = None if scene is None else charts_below_plan_view(scene, row, course, finding.rule["observes"], start_ns)
-    return Timeline(table, drawn, f"{row['rule_id']} in {row['drive_id']}")
+    charts = None if scene is None else charts_below_plan_view(scene, row, course, finding.rule["observes"], start_ns)
+    return Timeline(table, charts, f"{row['rule_id']} in {row['drive_id']}")
 
 
 def _matching_rows(table: pa.Table, values_by_column: Mapping[str, object]) -> list[Row]:
     """Return the rows that have these values."""
     for column, value in values_by_column.items():
         table = table.filter(pc.equal(table[column], value))
-    found: list[Row] = table.to_pylist()
-    return found
+    rows: list[Row] = table.to_pylist()
+    return rows
 
 
 def _add_motion(values: dict[int, dict[str, float | None]], scene: Row, object_id: str | None) -> None:
     """Add the speeds and accelerations of ego and object, and the gap between them, to `values`."""
     ego = scene["actors"][0]
-    met = next((each for each in scene["actors"][1:] if each["actor_id"] == object_id), None)
-    for who, actor in (("ego", ego), ("object", met)):
+    met = next((actor for actor in scene["actors"][1:] if actor["actor_id"] == object_id), None)
+    for role, actor in (("ego", ego), ("object", met)):
         for point in (actor and actor["path"]) or ():
-            told = {f"{who}_speed_mps": point["speed_mps"], f"{who}_accel_mps2": point["accel_mps2"]}
-            values.setdefault(point["t_ns"], {}).update(told)
+            columns = {f"{role}_speed_mps": point["speed_mps"], f"{role}_accel_mps2": point["accel_mps2"]}
+            values.setdefault(point["t_ns"], {}).update(columns)
     gap = box_distance_line(ego, met) if met is not None and ego["path"] and met["path"] else None
     for t_ns, distance in zip(gap.t_ns, gap.values, strict=True) if gap is not None else ():
         values[t_ns]["gap_m"] = distance

@@ -111,8 +111,8 @@ def raise_problems(problems: Sequence[str]) -> None:
 
 def error_message(error: duckdb.Error) -> str:
     """Return DuckDB's error message on one line, with the names that it suggests, without its SQL excerpt."""
-    said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
-    return " ".join(said.split())
+    text = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
+    return " ".join(text.split())
 
 
 def line_of_error(error: duckdb.Error, text: str) -> int | None:
@@ -120,10 +120,10 @@ def line_of_error(error: duckdb.Error, text: str) -> int | None:
 
     DuckDB's own line number is useless if the failed statement was composed from parts of the file.
     """
-    shown = re.search(r"^LINE \d+: (.*)$", str(error), re.MULTILINE)
-    part = shown[1].strip().removeprefix("...").removesuffix("...").strip() if shown else ""
-    found = [n for n, line in enumerate(text.splitlines(), 1) if part and part in line]
-    return found[0] if len(found) == 1 else None
+    match = re.search(r"^LINE \d+: (.*)$", str(error), re.MULTILINE)
+    part = match[1].strip().removeprefix("...").removesuffix("...").strip() if match else ""
+    numbers = [n for n, line in enumerate(text.splitlines(), 1) if part and part in line]
+    return numbers[0] if len(numbers) == 1 else None
 
 
 @lru_cache(maxsize=2048)  # a process may judge several times, with the same rules
@@ -135,22 +135,22 @@ def check_query(sql: str, file: str, line: int = 1) -> SelectParts:
     """
     text = _SqlText(sql, file, line)
     statement, node = _parse_select(text)
-    found = _SyntaxCollector(text)
+    collector = _SyntaxCollector(text)
     for part, ctes in walk(node):
-        found.visit(part, ctes)
-    raise_problems(found.refusals)
+        collector.visit(part, ctes)
+    raise_problems(collector.refusals)
     parameters = frozenset(statement.named_parameters)
     try:
-        needs = tables_needing_rows(node) & found.tables.keys()
+        needs = tables_needing_rows(node) & collector.tables.keys()
     except RecursionError as error:
         raise RuleError(f"{text.place_at(0)}: {_TOO_DEEP}") from error
-    names = frozenset(found.column_names)
+    names = frozenset(collector.column_names)
     return SelectParts(
-        frozenset(found.tables),
+        frozenset(collector.tables),
         parameters,
         _result_columns(node),
-        found.tables | _places_of_result_columns(text, node),
-        tuple(found.reasons),
+        collector.tables | _places_of_result_columns(text, node),
+        tuple(collector.reasons),
         needs,
         names,
         _is_union_by_name(node),
@@ -188,7 +188,7 @@ def parameter_places(sql: str, file: str, line: int) -> dict[str, str] | None:
         return None
     content = sql.encode()
     marks = [at for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.operator]
-    used = [(found[1].decode(), at) for at in marks if (found := re.compile(rb"\$(\w+)").match(content, at))]
+    used = [(match[1].decode(), at) for at in marks if (match := re.compile(rb"\$(\w+)").match(content, at))]
     offsets = dict.fromkeys(names) | {name: at for name, at in reversed(used) if name in names}
     return {name: text.place_at(at) for name, at in offsets.items()}
 
@@ -209,7 +209,7 @@ class _SyntaxCollector:
         kind = part.get("type")
         if part.get("sample"):
             self._add_refusal(part, "a sample differs every time: a rule may not use one")
-        modifiers = {each["type"] for each in part.get("modifiers") or ()}
+        modifiers = {modifier["type"] for modifier in part.get("modifiers") or ()}
         if modifiers & {"LIMIT_MODIFIER", "LIMIT_PERCENT_MODIFIER"} and "ORDER_MODIFIER" not in modifiers:
             self._add_refusal(part, "LIMIT without ORDER BY returns different rows every time: add ORDER BY")
         if part.get("ref_type") == "POSITIONAL":
@@ -234,11 +234,11 @@ class _SyntaxCollector:
         name = str(part.get("function_name", "")).lower()
         if name and name not in allowed_sql.functions():
             near = nearest_word(name, allowed_sql.functions())
-            what = f"function {name}()" if name.isidentifier() else f"operator {name.removesuffix('__postfix')}"
-            meant = f"; did you mean {near}()?" if near else ""
+            function = f"function {name}()" if name.isidentifier() else f"operator {name.removesuffix('__postfix')}"
+            suggestion = f"; did you mean {near}()?" if near else ""
             self._add_refusal(
                 part,
-                f"{what} is not allowed in a rule{meant}: only functions that always return the same value and "
+                f"{function} is not allowed in a rule{suggestion}: only functions that always return the same value and "
                 "use nothing but the tables, and the library's macros",
             )
         if name in allowed_sql.NEEDING_ORDER_BY and not _has_order_by(part):
@@ -249,9 +249,9 @@ class _SyntaxCollector:
             place = self._text.place_at(byte_offset_of(part))
             code, *rest = part["children"]
             arguments = _struct_fields(rest[0]) if rest else frozenset[str]()
-            self.reasons += [GivenReason(each, arguments, place) for each in _possible_texts(code)]
+            self.reasons += [GivenReason(child, arguments, place) for child in _possible_texts(code)]
             # columns that are used only in the text of a reason decide nothing; the walk visits a parent before its children
-            self._worded.update(id(each) for each, _ in walk(part["children"]) if each.get("class") == "COLUMN_REF")
+            self._worded.update(id(child) for child, _ in walk(part["children"]) if child.get("class") == "COLUMN_REF")
         if kind == "COLUMN_REF" and id(part) not in self._worded:
             self.column_names.add(part["column_names"][-1].lower())
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
@@ -342,9 +342,9 @@ def _places_of_result_columns(text: _SqlText, node: Node) -> dict[str, str]:
         node = union_queries(node)[0]
     items, content = node.get("select_list", []), text.sql.encode()
     offsets = [byte_offset_of(item) or 0 for item in items]
-    found: dict[str, str] = {}
+    places: dict[str, str] = {}
     for item, start, end in zip(items, offsets, [*offsets[1:], len(content)], strict=True):
         name = column_name(item)
         alias = re.search(rf'\bas\s+"?{re.escape(name)}\b'.encode(), content[start : max(start, end)], re.IGNORECASE)
-        found.setdefault(f"AS {name}", text.place_at(start + alias.start() if alias else start))
-    return found
+        places.setdefault(f"AS {name}", text.place_at(start + alias.start() if alias else start))
+    return places

@@ -131,15 +131,15 @@ def line_of_key(text: str, key: str) -> int:
 
     If no line sets the key, return the line of the table or key that would contain it, else 1.
     """
-    wanted = key.split(".")
+    parts = key.split(".")
     table: list[str] = []
     best, depth = 1, 0
     for n, line in enumerate(text.splitlines(), 1):
-        head, said = TABLE_LINE.match(line), _KEY_LINE.match(line)
+        head, match = TABLE_LINE.match(line), _KEY_LINE.match(line)
         if head:
             table = _split_key(head[1])
-        path = table if head else [*table, *_split_key(said[1])] if said else []
-        fits = len(path) <= len(wanted) and all(want in {"*", part} for want, part in zip(wanted, path, strict=False))
+        path = table if head else [*table, *_split_key(match[1])] if match else []
+        fits = len(path) <= len(parts) and all(want in {"*", part} for want, part in zip(parts, path, strict=False))
         if fits and len(path) > depth:
             best, depth = n, len(path)
     return best
@@ -151,7 +151,7 @@ def _split_key(name: str) -> list[str]:
 
 def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
     """Yield (key, problem) for the fields that contradict the rule's kind or sense."""
-    later, measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
+    later, is_measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
     if later != (h.subtype is not None):
         key = "subtype" if h.subtype else "kind"
         yield key, "subtype (temporal or physical) belongs to pre- and postconditions, and they need it"
@@ -161,15 +161,15 @@ def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
         yield "quantifier", f"quantifier = 'eventually' makes no sense for an {h.kind}: use a pre- or postcondition"
     if h.combine != "each" and h.kind == "invariant":
         yield "combine", "an invariant is judged per object: combine is for conditions at a reference point"
-    if measured and h.unit is None:
+    if is_measured and h.unit is None:
         yield "sense", "unit is missing: a measured condition needs its unit"
-    if not measured and h.near_margin is not None:
+    if not is_measured and h.near_margin is not None:
         yield "near_margin", "near_margin needs a measured condition, not sense = 'holds'"
     if h.kind == "invariant" and h.reference is not None:
         yield "reference", "an invariant has no reference point"
     if h.kind != "invariant" and h.exempt_after_s != 0:
         yield "exempt_after_s", "exempt_after_s is for invariants"
-    if h.observes is not None and not (measured and h.observes.strip()):
+    if h.observes is not None and not (is_measured and h.observes.strip()):
         message = "observes names what a measured condition observes, as a short noun phrase; sense = 'holds' observes nothing"
         yield "observes", message
     if h.kind == "invariant" and h.without_time is not None:
@@ -186,8 +186,8 @@ def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
             yield f"params.{name}", f"parameter {name!r}: use lower-case letters, digits and _, a letter first"
     for key, words in (("requires", h.requires), ("pass_requires", h.pass_requires)):
         yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.unknown_signal_message(word)))
-    known = vocabularies()["rule_tag"]
-    yield from (("tags", f"tags: {wrong}") for word in h.tags if (wrong := known.problem(word)))
+    vocabulary = vocabularies()["rule_tag"]
+    yield from (("tags", f"tags: {wrong}") for word in h.tags if (wrong := vocabulary.problem(word)))
     yield from (("law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word)))
     for name, words in h.applies.restricted_conditions.items():
         problems = (conditions.value_problem(name, word) for word in words)
@@ -195,11 +195,11 @@ def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
 
 
 def _number_problems(h: Header) -> Iterator[tuple[str, str]]:
-    least, most = h.applies.limit_min_mps, h.applies.limit_max_mps
-    for key, value in (("limit_min_mps", least), ("limit_max_mps", most)):
+    least, largest = h.applies.limit_min_mps, h.applies.limit_max_mps
+    for key, value in (("limit_min_mps", least), ("limit_max_mps", largest)):
         if value is not None and not 0 <= value < inf:
             yield f"applies.{key}", f"{key} must be a speed in m/s, not {value}"
-    if least is not None and most is not None and least > most:
+    if least is not None and largest is not None and least > largest:
         yield "applies.limit_min_mps", "limit_min_mps is above limit_max_mps: the rule would apply nowhere"
     for key in ("window_s", "exempt_after_s", "merge_gap_s"):
         if wrong := _seconds_problem(h, getattr(h, key)):

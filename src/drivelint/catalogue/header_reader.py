@@ -66,17 +66,19 @@ def read_header(text: str, where: str) -> ReadHeader:
     raw, problems, doubtful = _parse_line_by_line(text, where)
     if raw is None:
         return ReadHeader(None, problems, frozenset(doubtful))
-    found = [problem for problem in _problems(raw, Header, "") if problem.key not in doubtful]
-    doubtful |= {key for problem in found for key in (problem.key, problem.meant_key) if key and "." not in key}
-    absent = [problem for problem in found if problem.key not in raw and "." not in problem.key]
-    meant = {problem.meant_key for problem in found}
-    found = [problem for problem in found if problem not in absent or problem.key not in meant]
+    header_problems = [problem for problem in _problems(raw, Header, "") if problem.key not in doubtful]
+    doubtful |= {
+        key for problem in header_problems for key in (problem.key, problem.meant_key) if key and "." not in key
+    }
+    absent = [problem for problem in header_problems if problem.key not in raw and "." not in problem.key]
+    meant_keys = {problem.meant_key for problem in header_problems}
+    header_problems = [problem for problem in header_problems if problem not in absent or problem.key not in meant_keys]
     header = msgspec.convert(_usable_values(raw), Header)
     for key, message in contradictions(header):
         root = key.split(".")[0]
         if root not in doubtful and not (root in KEYS_OF_KIND and KEYS_OF_KIND & doubtful):
-            found.append(_Problem(key, message))
-    problems += [f"{where}:{line_of_key(text, problem.key)}: {problem.message}" for problem in found]
+            header_problems.append(_Problem(key, message))
+    problems += [f"{where}:{line_of_key(text, problem.key)}: {problem.message}" for problem in header_problems]
     return ReadHeader(header, problems, frozenset(doubtful))
 
 
@@ -100,8 +102,8 @@ def _parse_line_by_line(text: str, where: str) -> tuple[dict[str, Any] | None, l
 
 def _line_of_toml_error(message: str, lines: Sequence[str]) -> int:
     """Return the line of an error of the TOML parser; for a value without an end, the line on which it begins."""
-    found = re.search(r"at line (\d+)", message)
-    last = int(found[1]) if found else len(lines)
+    match = re.search(r"at line (\d+)", message)
+    last = int(match[1]) if match else len(lines)
     if message.startswith("Unclosed array"):
         begins = [n for n in range(1, last + 1) if re.search(r"=\s*\[[^\]]*$", lines[n - 1])]
     elif message.startswith("Unterminated"):
@@ -117,8 +119,8 @@ def _keys_at(lines: Sequence[str], n: int) -> set[str]:
     for line in lines[:n]:
         if head := TABLE_LINE.match(line):
             table, key = f"{head[1].strip()}.", ""
-        elif found := re.match(r"\s*[\"']?([\w-]+)[\"']?(?=\s*=|\s+\S)", line):
-            key = table + found[1]
+        elif match := re.match(r"\s*[\"']?([\w-]+)[\"']?(?=\s*=|\s+\S)", line):
+            key = table + match[1]
     return {key} if key else set()
 
 
@@ -138,18 +140,18 @@ def _problems(raw: Mapping[str, Any], struct: type[msgspec.Struct], path: str) -
             yield _Problem(f"{path}{key}", message)
     for name, field in fields.items():
         if name not in raw and field.required:
-            whose = f" of [{path[:-1]}]" if path else ""
-            yield _Problem(f"{path}{name}", f"header: missing required field `{name}`{whose}")
+            of_table = f" of [{path[:-1]}]" if path else ""
+            yield _Problem(f"{path}{name}", f"header: missing required field `{name}`{of_table}")
 
 
 def _table_problems(table: Any, struct: type[msgspec.Struct], path: str) -> Iterator[_Problem]:
     if not isinstance(table, dict):
         yield _Problem(path, f"header: {path} must be a table, with {', '.join(struct.__struct_fields__)}")
         return
-    found = list(_problems(table, struct, f"{path}."))
-    meant = {problem.meant_key for problem in found}
-    yield from (problem for problem in found if problem.key not in meant)
-    if not found and (message := _value_problem(path, table, struct)):
+    problems = list(_problems(table, struct, f"{path}."))
+    meant_keys = {problem.meant_key for problem in problems}
+    yield from (problem for problem in problems if problem.key not in meant_keys)
+    if not problems and (message := _value_problem(path, table, struct)):
         yield _Problem(path, message)
 
 
@@ -173,15 +175,15 @@ def _shortened_text(text: str) -> str:
 def _usable_values(raw: Mapping[str, Any]) -> dict[str, Any]:
     """Return the header without the keys and values that cannot be used, and with placeholders for absent values."""
     fields = {field.name: field for field in msgspec.structs.fields(Header)}
-    found = {
+    values = {
         key: raw[key] for key, field in fields.items() if key in raw and not _value_problem("", raw[key], field.type)
     }
     for key, struct in _TABLES.items():
-        if key not in found and isinstance(raw.get(key), dict):
+        if key not in values and isinstance(raw.get(key), dict):
             tables, placeholder = raw[key].items(), _TABLE_PLACEHOLDERS[key]
-            found[key] = {name: placeholder if _value_problem("", table, struct) else table for name, table in tables}
+            values[key] = {name: placeholder if _value_problem("", table, struct) else table for name, table in tables}
     placeholders = {name: _placeholder(field.type) for name, field in fields.items() if field.required}
-    return placeholders | found
+    return placeholders | values
 
 
 def _placeholder(field_type: Any) -> Any:

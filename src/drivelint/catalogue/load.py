@@ -57,10 +57,10 @@ def rule_files(root: Path) -> list[Path]:
 
     Errors: `RuleError` for a folder without rules.
     """
-    found = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
-    if not found:
+    files = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
+    if not files:
         raise RuleError(f"{root}: no rules here; a folder of rules holds packs, <pack>/<rule>.sql, or is one")
-    return found
+    return files
 
 
 def rule_id_of(file: Path) -> str:

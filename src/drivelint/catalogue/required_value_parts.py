@@ -60,15 +60,15 @@ def read_parts(rule: Rule) -> RequiredValueParts | None:
     if not file.is_file():
         return None
     try:
-        found = msgspec.toml.decode(file.read_bytes(), type=RequiredValueParts)
+        parts = msgspec.toml.decode(file.read_bytes(), type=RequiredValueParts)
     except (msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise RuleError(f"{file}: {error}: write sql and [parts], as beside ukhc.r162.safe-distance-ahead") from error
-    query = check_query(found.sql, str(file))
+    query = check_query(parts.sql, str(file))
     if strange := sorted(query.tables - set(rule.reads)):
         raise RuleError(f"{file}: reads {strange[0]!r}, which the rule does not read")
     if strange := sorted(query.parameters - rule.params.keys()):
         raise RuleError(f"{file}: ${strange[0]} is no parameter of the rule")
     columns = set(query.columns or ())
-    if not columns >= _REQUIRED_COLUMNS or columns - set(KEY_COLUMNS) != found.parts.keys():
+    if not columns >= _REQUIRED_COLUMNS or columns - set(KEY_COLUMNS) != parts.parts.keys():
         raise RuleError(f"{file}: the SELECT must return drive_id, ego_id, t_ns and the columns that [parts] names")
-    return found
+    return parts

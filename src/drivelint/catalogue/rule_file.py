@@ -54,10 +54,10 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, chec
 
     `pack`, `pack_title`: name and title of its pack; `check_words`: also check the words in its SQL.
     """
-    for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
+    for part, kind, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
             raise RuleError(
-                f"{file}: the {what} name {part!r} makes no rule id: "
+                f"{file}: the {kind} name {part!r} makes no rule id: "
                 "lower-case letters, digits, '-', '_' (and '.' in the file name) only"
             )
     try:
@@ -126,8 +126,8 @@ def in_order_of_lines(problems: Sequence[str], file: Path) -> list[str]:
     """Return the problems `file:line: message` in the order of their lines."""
 
     def line(problem: str) -> int:
-        found = re.match(r":(\d+):", problem.removeprefix(str(file)))
-        return int(found[1]) if found else 0
+        match = re.match(r":(\d+):", problem.removeprefix(str(file)))
+        return int(match[1]) if match else 0
 
     return sorted(problems, key=line)
 
@@ -153,7 +153,7 @@ def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozens
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
     declared = declarations.input_quantities_by_column()
     # an event table named in the header provides all its columns: only columns that other sections name count
-    named = {
+    columns = {
         name
         for section, query in queries.items()
         if not (header.reference and section == "reference")
@@ -161,7 +161,7 @@ def _used_quantities(header: Header, queries: dict[str, SelectParts]) -> frozens
     }
     used = {"existence", "identity"} | ({"position"} if header.reference else set())
     for table in header.reads:
-        used.update(*(quantities for column, quantities in declared.get(table, {}).items() if column in named))
+        used.update(*(quantities for column, quantities in declared.get(table, {}).items() if column in columns))
     return frozenset(used.difference(header.unaffected_by))
 
 
@@ -177,12 +177,12 @@ def split_sections(text: str, where: str, problems: list[str]) -> tuple[str, dic
     header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
     sections: dict[str, Section] = {}
     ends = [n for n, _ in marks[1:]] + [len(lines)]
-    named = {name for _, name in marks}
-    for (start, written), end in zip(marks, ends, strict=False):
-        name = written
+    section_names = {name for _, name in marks}
+    for (start, name_of_mark), end in zip(marks, ends, strict=False):
+        name = name_of_mark
         if name not in SECTIONS:
             problems.append(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, prefix='@')}")
-            name = nearest_word(name, set(SECTIONS) - named) or name
+            name = nearest_word(name, set(SECTIONS) - section_names) or name
         if name in sections:
             problems.append(f"{where}:{start + 1}: section @{name} stands twice")
             continue
@@ -190,11 +190,11 @@ def split_sections(text: str, where: str, problems: list[str]) -> tuple[str, dic
         body = "\n".join(below).strip()
         if not body:
             problems.append(f"{where}:{start + 1}: section @{name} is empty")
-            named.add(name)
+            section_names.add(name)
         elif name in SECTIONS:
             blank = next(n for n, line in enumerate(below) if line.strip())
             sections[name] = Section(body, start + 1, start + 2 + blank)
-    if "condition" not in sections and "condition" not in named:
+    if "condition" not in sections and "condition" not in section_names:
         problems.append(f"{where}:{len(lines)}: section '-- @condition' is missing")
     return "\n".join(header), sections
 
@@ -227,20 +227,20 @@ def _section_problems(
     header: Header, sections: dict[str, Section], queries: dict[str, SelectParts], file: Path
 ) -> Iterator[str]:
     """Yield the problems of missing or surplus sections, and of each section's columns."""
-    wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
-    for name, needed in wanted.items():
-        if needed != (name in sections):
+    is_needed_by_section = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
+    for name, is_needed in is_needed_by_section.items():
+        if is_needed != (name in sections):
             line = sections[name].line if name in sections else 1
-            what = " ".join(word for word in (header.subtype, header.kind) if word)
-            yield (f"{file}:{line}: {what}: {'needs a' if needed else 'has no'} section @{name}")
+            kind = " ".join(word for word in (header.subtype, header.kind) if word)
+            yield (f"{file}:{line}: {kind}: {'needs a' if is_needed else 'has no'} section @{name}")
     if "applies" in sections and header.kind != "invariant":
         yield (
             f"{file}:{sections['applies'].line}: @applies is for invariants; "
             "return a column 'applies' from the condition instead"
         )
-    measured = ("holds",) if header.sense == "holds" else ("observed", "required")
+    value_columns = ("holds",) if header.sense == "holds" else ("observed", "required")
     contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-        "condition": ((*_KEY_COLUMNS, *measured), _CONDITION_COLUMNS),
+        "condition": ((*_KEY_COLUMNS, *value_columns), _CONDITION_COLUMNS),
         "applies": (_KEY_COLUMNS, (*_KEY_COLUMNS, "object_id", "episode", "applies", "reason")),
         "anchor": (("ref_id", "t_ns"), ("ref_id", "drive_id", "ego_id", "t_ns")),
     }
@@ -265,9 +265,9 @@ def _column_problems(
     if len(set(columns)) != len(columns):
         yield (f"{where} returns a column twice: {', '.join(columns)}")
     stray = [c for c in columns if c not in allowed_columns]
-    meant = {nearest_word(c, allowed_columns) for c in stray}
-    if missing := [c for c in required_columns if c not in columns and c not in meant]:
-        yield (f"{where} must return {', '.join(required_columns)}; {', '.join(missing)} missing")
+    meant_columns = {nearest_word(c, allowed_columns) for c in stray}
+    if missing_columns := [c for c in required_columns if c not in columns and c not in meant_columns]:
+        yield (f"{where} must return {', '.join(required_columns)}; {', '.join(missing_columns)} missing")
     for c in stray:
         yield (f"{query.places[f'AS {c}']}: {section} returns the unknown column {c!r}; {hint(c, allowed_columns)}")
 
@@ -276,8 +276,8 @@ def _condition_problems(header: Header, query: SelectParts, where: str) -> Itera
     """Yield contradictions between condition and header: sense, reference, and `combine`."""
     columns = query.columns or ()
     wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
-    if found := sorted(wrong & set(columns)):
-        yield (f"{where}: column {found[0]!r} does not go with sense = {header.sense!r}")
+    if wrong_columns := sorted(wrong & set(columns)):
+        yield (f"{where}: column {wrong_columns[0]!r} does not go with sense = {header.sense!r}")
     if ("ref_id" in columns) != bool(ENGINE_TABLES & query.tables):
         yield (f"{where}: a condition that reads reference or reference_step returns ref_id, and no other does")
     if header.combine != "each" and "object_id" not in columns:
@@ -291,37 +291,41 @@ def _reads_problems(
 
     `place_of_reads`: `file:line` of that key. `is_complete`: the tables of all sections are known.
     """
-    given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
+    tables_of_engine = (
+        {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
+    )
     for name, query in queries.items():
-        if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
+        if early := sorted(query.tables & ENGINE_TABLES - tables_of_engine.get(name, frozenset())):
             yield (f"{query.places[early[0]]}: @{name} has no table {early[0]!r} in a rule of kind {header.kind}")
-    said = frozenset(header.reads)
-    unknown = sorted(said - allowed_sql.tables())
+    declared = frozenset(header.reads)
+    unknown = sorted(declared - allowed_sql.tables())
     for name in unknown:
         yield (f"{place_of_reads}: reads: {allowed_sql.unknown_table_message(name)}")
-    told = {nearest_word(name, allowed_sql.tables()) for name in unknown}
+    reported = {nearest_word(name, allowed_sql.tables()) for name in unknown}
     for query in queries.values():
-        if undeclared := sorted(query.tables - ENGINE_TABLES - said - told):
+        if undeclared := sorted(query.tables - ENGINE_TABLES - declared - reported):
             yield (f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads")
-            told.update(undeclared)
-    idle = sorted(said.difference(unknown, *(query.tables for query in queries.values())))
+            reported.update(undeclared)
+    idle = sorted(declared.difference(unknown, *(query.tables for query in queries.values())))
     if is_complete and idle:
         yield (f"{place_of_reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
 def _param_problems(header: Header, sections: dict[str, Section], file: Path, toml: str) -> Iterator[str]:
     by_section = [parameter_places(section.sql, str(file), section.sql_line) for section in sections.values()]
-    places = {name: place for found in reversed(by_section) for name, place in (found or {}).items()}
-    meant = set()
+    places = {
+        name: place for places_of_section in reversed(by_section) for name, place in (places_of_section or {}).items()
+    }
+    meant_names = set()
     for name in sorted(places.keys() - header.params.keys()):
         near = nearest_word(name, header.params)
-        meant.add(near)
+        meant_names.add(near)
         yield (
             f"{places[name]}: ${name} is not a parameter of this rule; "
             f"{f'did you mean ${near}? If not, ' if near else ''}add [params.{name}] to the header, with default, unit, why and source"
         )
     times = (header.window_s, header.exempt_after_s, header.merge_gap_s)
-    used = places.keys() | {s for s in times if isinstance(s, str)} | meant
+    used = places.keys() | {s for s in times if isinstance(s, str)} | meant_names
     for name in sorted(header.params.keys() - used) if None not in by_section else ():
         line = line_of_key(toml, f"params.{name}")
         yield (f"{file}:{line}: parameter {name!r} is never used: bind it as ${name}")
@@ -339,14 +343,14 @@ def _refuse_wrong_words(header: Header, sections: dict[str, Section], file: Path
 
 def _reason_problems(header: Header, queries: dict[str, SelectParts], file: Path, toml: str) -> Iterator[str]:
     """Yield the problems of reason codes: codes without a text, texts without their arguments, and unused codes."""
-    known = {**texts_of_shared_codes(), **header.reasons}
-    given = [reason for query in queries.values() for reason in query.reasons]
-    for code, arguments, place in given:
-        if code not in known:
-            yield (f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, known)}")
+    texts = {**texts_of_shared_codes(), **header.reasons}
+    reasons = [reason for query in queries.values() for reason in query.reasons]
+    for code, arguments, place in reasons:
+        if code not in texts:
+            yield (f"{place}: why({code!r}) has no words: add [reasons.{code}] to the header; {hint(code, texts)}")
             continue
-        if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
+        if arguments is not None and (absent := sorted(texts[code].required_arguments - arguments)):
             yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
-    for code in sorted(header.reasons.keys() - {reason.code for reason in given}):
+    for code in sorted(header.reasons.keys() - {reason.code for reason in reasons}):
         line = line_of_key(toml, f"reasons.{code}")
         yield (f"{file}:{line}: the reason {code!r} is never used: use it in why({code!r}), or remove it")

@@ -24,13 +24,13 @@ def refuse_wrong_words(
     Errors: `RuleError` with a line for each wrong word, with the nearest valid word.
     """
     try:
-        found = _checked_queries(sections)
+        queries = _checked_queries(sections)
     except _DeepSectionError as error:
         raise RuleError(f"{place_of(error.section, 0)}: too deeply nested to be checked: split it into CTEs") from error
     problems = [
         f"{place_of(name, wrong.offset or 0)}: {wrong.message}"
-        for name, checked in found.items()
-        for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0)
+        for name, query in queries.items()
+        for wrong in sorted(query.wrong, key=lambda word: word.offset or 0)
     ]
     for name, param in params.items():
         if problem := parameter_problem(sections, name, param.default):
@@ -43,10 +43,10 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     """Return why a column that the rule compares with this parameter can never have this value; None if the value is possible."""
     if not isinstance(value, str):
         return None
-    given = PossibleWords(literals={value: LiteralPlace(None)}, direct=True)
-    for checked in _checked_queries(sections).values():
-        for other in checked.parameters.get(name, ()):
-            for wrong in wrong_words(given, other):
+    literal = PossibleWords(literals={value: LiteralPlace(None)}, direct=True)
+    for query in _checked_queries(sections).values():
+        for compared in query.parameters.get(name, ()):
+            for wrong in wrong_words(literal, compared):
                 return wrong.message
     return None
 
@@ -64,14 +64,14 @@ def _checked_queries(sections: Mapping[str, str]) -> dict[str, word_check.Checke
 
     Errors: `_DeepSectionError`.
     """
-    found: dict[str, word_check.CheckedQuery] = {}
+    queries: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}
-    for name in sorted(sections, key=lambda each: each != "reference"):
+    for name in sorted(sections, key=lambda section: section != "reference"):
         try:
-            found[name] = word_check.check_query(syntax.parse_select(sections[name], name), tables)
+            queries[name] = word_check.check_query(syntax.parse_select(sections[name], name), tables)
         except RecursionError as error:
             raise _DeepSectionError(name) from error
         if name == "reference":
-            columns = found[name].relation._replace(complete=False)
+            columns = queries[name].relation._replace(complete=False)
             tables = {"reference": columns, "reference_step": columns}
-    return found
+    return queries

@@ -53,17 +53,17 @@ def select_rules(
     contains the id. Errors: `UsageError` if a selector matches no rule, or no rule is left.
     """
     if include:
-        chosen = {rule.id: rule for selector in include for rule in _matching_rules(rules, selector)}
+        selection = {rule.id: rule for selector in include for rule in _matching_rules(rules, selector)}
     else:
-        chosen = {rule.id: rule for rule in rules.values() if rule.pack == default_pack and rule.status == "stable"}
+        selection = {rule.id: rule for rule in rules.values() if rule.pack == default_pack and rule.status == "stable"}
     for selector in ignore:
         for rule in _matching_rules(rules, selector):
-            chosen.pop(rule.id, None)
-    if not chosen:
+            selection.pop(rule.id, None)
+    if not selection:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
     if named_ids is None:
         named_ids = {part.strip() for selector in include for part in selector.split(",")}
-    return [msgspec.structs.replace(chosen[name], is_named=name in named_ids) for name in sorted(chosen)]
+    return [msgspec.structs.replace(selection[name], is_named=name in named_ids) for name in sorted(selection)]
 
 
 def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:
@@ -84,33 +84,33 @@ def required_rules(
     Rules that match `ignore` are not required, unless a selector is their id. Errors: `UsageError` for a required id that is not
     selected, a selector without a selected rule, or a selector without a stable rule, since other rules do not gate.
     """
-    chosen = {rule.id for rule in selected}
+    selected_ids = {rule.id for rule in selected}
     left_out = {rule.id for selector in ignore for rule in _matching_rules(rules, selector)}
-    found: set[str] = set()
+    ids: set[str] = set()
     for selector in required:
         stable = {rule.id for rule in _matching_rules(rules, selector) if rule.status == "stable"}
         if not stable:
             raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
         # a selector such as a severity matches rules of every pack: only the selected rules of the run are required
-        lacking = sorted(stable - chosen - (left_out - {selector}))
-        if not stable & chosen and not lacking:
+        lacking = sorted(stable - selected_ids - (left_out - {selector}))
+        if not stable & selected_ids and not lacking:
             raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
-        if lacking and (selector in rules or not stable & chosen):
+        if lacking and (selector in rules or not stable & selected_ids):
             raise UsageError(f"--require {selector!r}: not selected by --rules: {name_list(lacking, 3)}")
-        found |= stable & chosen
-    return tuple(sorted(found))
+        ids |= stable & selected_ids
+    return tuple(sorted(ids))
 
 
 def _matching_rules(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     """Return the rules that match every comma-separated part of the selector."""
     parts = [part.strip() for part in selector.split(",")]
-    found = [{rule.id for rule in _rules_matching_part(rules, part)} for part in parts]
-    both = set.intersection(*found)
-    if not both and len(parts) > 1:
+    ids_by_part = [{rule.id for rule in _rules_matching_part(rules, part)} for part in parts]
+    ids = set.intersection(*ids_by_part)
+    if not ids and len(parts) > 1:
         raise UsageError(
             f"no rule is all of {selector!r}: each part alone selects some; for any of them, repeat --rules"
         )
-    return [rules[rule_id] for rule_id in sorted(both)]
+    return [rules[rule_id] for rule_id in sorted(ids)]
 
 
 def _rules_matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
@@ -126,13 +126,13 @@ def _rules_matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
         ]
     if problem := glob_length_problem(part):
         raise UsageError(f"the selector of rules {part[:40]!r}... has {problem}")
-    found = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
-    if not found:
-        known = [*rules, *(rule.pack for rule in rules.values())]
+    matches = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
+    if not matches:
+        names = [*rules, *(rule.pack for rule in rules.values())]
         raise UsageError(
-            f"no rule, pack or glob matches {part!r}{_nearest_hint(part, known)} (rules of your own: --rules-dir DIR)"
+            f"no rule, pack or glob matches {part!r}{_nearest_hint(part, names)} (rules of your own: --rules-dir DIR)"
         )
-    return [rule for rule in found if rule.status != "deprecated"]
+    return [rule for rule in matches if rule.status != "deprecated"]
 
 
 def _rules_with_property(rules: Mapping[str, Rule], property_name: str, word: str) -> list[Rule]:
@@ -140,19 +140,19 @@ def _rules_with_property(rules: Mapping[str, Rule], property_name: str, word: st
     if property_name not in _WORDS_OF_PROPERTY:
         raise UsageError(f"rules are not selected by {property_name!r}; {hint(property_name, _WORDS_OF_PROPERTY)}")
     words = {rule.id: _WORDS_OF_PROPERTY[property_name](rule) for rule in rules.values()}
-    found = [rules[rule_id] for rule_id, mine in words.items() if word.casefold() in mine]
-    if not found:
-        known = sorted({name for mine in words.values() for name in mine})
-        shown = f"; known are {', '.join(known)}" if len(known) <= _MAX_LISTED_WORDS else ""
-        raise UsageError(f"no rule has the {property_name} {word!r}{_nearest_hint(word, known) or shown}")
-    return found
+    matches = [rules[rule_id] for rule_id, words_of_rule in words.items() if word.casefold() in words_of_rule]
+    if not matches:
+        names = sorted({name for words_of_rule in words.values() for name in words_of_rule})
+        listed = f"; known are {', '.join(names)}" if len(names) <= _MAX_LISTED_WORDS else ""
+        raise UsageError(f"no rule has the {property_name} {word!r}{_nearest_hint(word, names) or listed}")
+    return matches
 
 
 def clause_names(rule: Rule) -> set[str]:
     """Return the clause names, in lower case, by which a rule can be selected; from its `clause` and its id."""
-    named = re.findall(r"[A-Za-z]*\d[\w.()]*", rule.clause.split(":", 1)[0])
+    names = re.findall(r"[A-Za-z]*\d[\w.()]*", rule.clause.split(":", 1)[0])
     inside = rule.id.split(".")[1:2] if rule.id.count(".") > 1 else []
-    return {name.rstrip(".").casefold() for name in [*named, *inside]}
+    return {name.rstrip(".").casefold() for name in [*names, *inside]}
 
 
 def _words_of_header_field(name: str, rule: Rule) -> set[str]:
@@ -185,23 +185,23 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
     Errors: `UsageError` for a setting without '=', an unknown rule (with the nearest id) or parameter (with the known ones), or a wrong
     value.
     """
-    known = {rule.id: rule for rule in rules}
+    rule_by_id = {rule.id: rule for rule in rules}
     values: dict[str, dict[str, float | str | bool]] = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
         rule_id, dot, param = name.strip().rpartition(".")
         if not equals or not dot:
             raise UsageError(f"--param {setting!r}: write RULE.PARAM=VALUE")
-        if rule_id not in known:
-            raise UsageError(f"--param {setting!r}: no rule {rule_id!r} is loaded{_nearest_hint(rule_id, known)}")
-        params = known[rule_id].params
+        if rule_id not in rule_by_id:
+            raise UsageError(f"--param {setting!r}: no rule {rule_id!r} is loaded{_nearest_hint(rule_id, rule_by_id)}")
+        params = rule_by_id[rule_id].params
         if param not in params:
             names = ", ".join(params) or "none"
             raise UsageError(f"--param {setting!r}: {rule_id} has no parameter {param!r}; it has: {names}")
         value = _parse_value(text.strip(), params[param].default, setting)
         from drivelint.catalogue.rule_words import parameter_problem  # imported here, since it imports the SQL parser
 
-        if problem := parameter_problem(known[rule_id].sections, param, value):
+        if problem := parameter_problem(rule_by_id[rule_id].sections, param, value):
             raise UsageError(f"--param {setting!r}: {problem}")
         values.setdefault(rule_id, {})[param] = value
     return values

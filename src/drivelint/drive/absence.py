@@ -84,12 +84,12 @@ def egos_with_recorder(recording: Recording) -> list[str]:
 
 def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
     """Return the absences of the recorder's own egos, or of the ego that the user chooses (states not yet cleaned)."""
-    states, own = recording.states, egos_with_recorder(recording)
-    expected = own if ego_option is None or asks_for_all_egos(ego_option, states.ids) else [ego_option]
+    states, egos = recording.states, egos_with_recorder(recording)
+    names = egos if ego_option is None or asks_for_all_egos(ego_option, states.ids) else [ego_option]
     absences_of_egos = []
-    for name in expected:
+    for name in names:
         t_ns = _times_with_position(states, name)
-        of_track = name not in own and len(t_ns) > 0
+        of_track = name not in egos and len(t_ns) > 0
         span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _log_span_ns(recording)
         absence = _absence_of_actor(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
         if len(absence.since_ns):
@@ -118,9 +118,9 @@ def _times_with_position(states: States, actor_id: str) -> Times:
     """Return the times, ascending, at which an actor has a position."""
     if actor_id not in states.ids or not {"x_m", "y_m"} <= states.numbers.keys():
         return np.zeros(0, np.int64)
-    mine = states.actor == states.ids.index(actor_id)
-    mine &= np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"])
-    return np.unique(states.t_ns[mine])
+    has_place = states.actor == states.ids.index(actor_id)
+    has_place &= np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"])
+    return np.unique(states.t_ns[has_place])
 
 
 def _absence_of_actor(
@@ -142,14 +142,14 @@ def frame_times_without_states(recording: Recording, ego_absences: Sequence[Abse
     """Return the times of frames without any actor during the absence of an ego (states not yet cleaned)."""
     if recording.frames_ns is None or not ego_absences:
         return np.zeros(0, np.int64)
-    within = np.any([each.stretch_indices(recording.frames_ns) >= 0 for each in ego_absences], axis=0)
+    within = np.any([absence.stretch_indices(recording.frames_ns) >= 0 for absence in ego_absences], axis=0)
     return np.setdiff1d(recording.frames_ns[within], recording.states.t_ns)
 
 
 def with_unknown_ego_states(states: States, ego_absences: Sequence[Absence], frames_ns: Times | None) -> States:
     """Add states without values for each ego, at the frames during its absence. The states are sorted, and so is the result."""
-    ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in ego_absences)]))
-    more = [_unknown_ego_states(states, ids, each, frames_ns) for each in ego_absences]
+    ids = list(dict.fromkeys([*states.ids, *(absence.ego_id for absence in ego_absences)]))
+    more = [_unknown_ego_states(states, ids, absence, frames_ns) for absence in ego_absences]
     if not any(map(len, more)):
         return states
     states.ids = ids
@@ -182,8 +182,8 @@ def _times_to_fill(absence: Absence, states: States, ego_times_ns: Times, frames
         return times
     of = absence.stretch_indices(times)
     slot = (times - absence.since_ns[of] + half) // period
-    _, one = np.unique(np.stack([of, slot]), axis=1, return_index=True)
-    times, of = times[one], of[one]
+    _, first = np.unique(np.stack([of, slot]), axis=1, return_index=True)
+    times, of = times[first], of[first]
     apart = np.diff(times)
     wide = np.flatnonzero((apart > MAX_GAP_PERIODS * period) & (apart <= LONGEST_FRAME_STEP_NS) & (np.diff(of) == 0))
     if len(wide) > len(times) / 2:
@@ -191,8 +191,8 @@ def _times_to_fill(absence: Absence, states: States, ego_times_ns: Times, frames
         between = [np.arange(times[k] + step, times[k + 1] - step // 2, step) for k in wide]
         times = np.sort(np.concatenate([times, *between]))
     beside = np.searchsorted(ego_times_ns, times - half)
-    taken = np.append(ego_times_ns, np.iinfo(np.int64).max)[beside] <= times + half
-    return times[~taken]
+    is_near_state = np.append(ego_times_ns, np.iinfo(np.int64).max)[beside] <= times + half
+    return times[~is_near_state]
 
 
 def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[QualityFinding]:
@@ -212,12 +212,12 @@ def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[Qu
             f"the {ego_name(absence.ego_id)} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: "
             "what it did in that time is unknown"
         )
-        mine = (
+        ego_times = (
             states.t_ns[states.actor == states.ids.index(absence.ego_id)]
             if absence.ego_id in states.ids
             else begins[:0]
         )
-        n = int((absence.stretch_indices(mine) >= 0).sum())
+        n = int((absence.stretch_indices(ego_times) >= 0).sum())
         findings.append(QualityFinding(EGO_ABSENT_CHECK, "error", message, max(n, 1), int(begins[0]), absence.ego_id))
     return findings
 
@@ -229,12 +229,12 @@ def without_ego_choices(findings: Sequence[QualityFinding]) -> list[QualityFindi
 
 def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
     """Return a finding, with the length of the track, if the user chooses another ego than the recorder's (states not yet cleaned)."""
-    own, states = egos_with_recorder(recording), recording.states
-    if ego_option is None or ego_option in own:
+    egos, states = egos_with_recorder(recording), recording.states
+    if ego_option is None or ego_option in egos:
         return []
     if asks_for_all_egos(ego_option, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
-        names: list[str | None] = [*own] if own else [None]
+        names: list[str | None] = [*egos] if egos else [None]
         return [QualityFinding(ALL_EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]
     t_ns, (first, last) = _times_with_position(states, ego_option), _log_span_ns(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"

@@ -100,8 +100,8 @@ def _classes(states: States) -> tuple[list[str | None], list[QualityFinding]]:
     codes = states.codes.get("actor_class")
     if codes is None or not len(states):
         return classes, []
-    known = np.flatnonzero(codes >= 0)
-    actor, code = states.actor[known], codes[known]
+    with_class = np.flatnonzero(codes >= 0)
+    actor, code = states.actor[with_class], codes[with_class]
     first = np.full(len(states.ids), -1)
     actors, rows = np.unique(actor, return_index=True)
     first[actors] = code[rows]
@@ -110,12 +110,12 @@ def _classes(states: States) -> tuple[list[str | None], list[QualityFinding]]:
     changing = np.unique(actor[code != first[actor]])
     for number in changing:
         counts = np.bincount(code[actor == number], minlength=len(ACTOR_CLASSES))
-        most = int(counts.argmax())
-        if counts[most] >= LEAST_SHARE_OF_CLASS * counts.sum():
-            classes[number] = ACTOR_CLASSES[most]
+        commonest = int(counts.argmax())
+        if counts[commonest] >= LEAST_SHARE_OF_CLASS * counts.sum():
+            classes[number] = ACTOR_CLASSES[commonest]
         else:
-            seen = {ACTOR_CLASSES[i] for i in np.flatnonzero(counts)}
-            classes[number] = None if seen & NO_VEHICLES else "vehicle"
+            words = {ACTOR_CLASSES[i] for i in np.flatnonzero(counts)}
+            classes[number] = None if words & NO_VEHICLES else "vehicle"
     if not len(changing):
         return classes, []
     ids = [states.ids[number] for number in changing]
@@ -133,13 +133,11 @@ def from_table(table: pa.Table, states: States, old_id_by_id: Mapping[str, str])
     rows = {str(row["actor_id"]): row for row in reversed(table.to_pylist()) if row["actor_id"] not in {None, ""}}
     rows |= {new: rows[old] for new, old in old_id_by_id.items() if old in rows}
     ids = sorted({*rows, *states.ids})
-    nothing: dict[str, object] = {}
-    classes = [str(value) if (value := rows.get(i, nothing).get("actor_class")) else None for i in ids]
+    no_row: dict[str, object] = {}
+    classes = [str(value) if (value := rows.get(i, no_row).get("actor_class")) else None for i in ids]
     sizes = {}
     for name in SIZE_COLUMNS:
-        raw = np.array(
-            [np.nan if (value := rows.get(i, nothing).get(name)) is None else value for i in ids], np.float64
-        )
+        raw = np.array([np.nan if (value := rows.get(i, no_row).get(name)) is None else value for i in ids], np.float64)
         sizes[name] = np.where(np.isfinite(raw) & (raw > 0.0), raw, np.nan)
     return Actors(ids, classes, sizes)
 
@@ -194,9 +192,11 @@ def _actors_moving_along_heading(states: States, least_mps: float) -> list[str]:
 def _implausible_size_findings(states: States, actors: Actors) -> list[QualityFinding]:
     bad = np.zeros(len(actors.ids), np.bool_)
     least = np.array([LEAST_LENGTH_AND_WIDTH_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
-    known = np.array([kind in LEAST_LENGTH_AND_WIDTH_M for kind in actors.classes], np.bool_)
+    has_limits = np.array([kind in LEAST_LENGTH_AND_WIDTH_M for kind in actors.classes], np.bool_)
     for axis, name in enumerate(("length_m", "width_m")):
-        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_LENGTH_AND_WIDTH_M[axis]))
+        bad |= has_limits & (
+            (actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_LENGTH_AND_WIDTH_M[axis])
+        )
     ids = _actor_ids(actors, bad)
     if not ids:
         return []

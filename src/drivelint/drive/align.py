@@ -95,8 +95,8 @@ def _track_at_ego_steps(
     inside = (before >= 0) & (steps <= t_ns[-1])
     before = np.clip(before, 0, len(t_ns) - 1)
     after = np.minimum(before + (inside & (t_ns[before] < steps)), len(t_ns) - 1)
-    known = t_ns[after] - t_ns[before] <= MAX_GAP_PERIODS * period_ns
-    steps, before, after, inside = steps[known], before[known], after[known], inside[known]
+    is_known = t_ns[after] - t_ns[before] <= MAX_GAP_PERIODS * period_ns
+    steps, before, after, inside = steps[is_known], before[is_known], after[is_known], inside[is_known]
     rows, later = span.start + before, span.start + after
     apart = np.maximum(t_ns[after] - t_ns[before], 1)
     share = np.where(inside, (steps - t_ns[before]) / apart, 0.0)

@@ -32,8 +32,8 @@ def velocity_of_centre(velocity: Floats, lever: Floats, yaw_rate_radps: Floats) 
     as 0.
     """
     turning = np.where(np.isnan(yaw_rate_radps), 0.0, yaw_rate_radps)
-    moved = np.any(lever != 0.0, axis=0)
-    return np.where(moved, velocity + turning * np.stack([-lever[1], lever[0]]), velocity)
+    has_lever = np.any(lever != 0.0, axis=0)
+    return np.where(has_lever, velocity + turning * np.stack([-lever[1], lever[0]]), velocity)
 
 
 def yaw_rates(states: States, yaw_rad: Floats) -> Floats:

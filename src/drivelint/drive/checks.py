@@ -183,10 +183,10 @@ def _recorded_speeds_vs_speeds_from_positions(
     Returns, indexed by first row (n - n_steps): the difference, the mean speed, the speed from positions, and the mask of the intervals
     without a jump or hole.
     """
-    known = steps_with_known_motion(states, step) & ~jump[1:]
-    went, led, usable, span_s = motion_over_steps(states, step, known, n_steps)
+    usable_steps = steps_with_known_motion(states, step) & ~jump[1:]
+    went, led, usable, span_s = motion_over_steps(states, step, usable_steps, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-    speed = sliding_sums(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
+    speed = sliding_sums(integral_per_step(np.hypot(*states.velocity), step, usable_steps), n_steps) / span_s
     went /= span_s
     led /= span_s
     return np.hypot(*(went - led)), speed, np.hypot(*went), usable

@@ -84,14 +84,14 @@ def _spans_covered_twice(states: States, run: Times) -> dict[tuple[int, int], tu
     for i in np.flatnonzero(end - begin >= LEAST_STATES_OF_CLOCK_RUN):
         tracks.setdefault(int(states.actor[by[begin[i]]]), []).append(by[begin[i] : end[i]])
     spans: dict[tuple[int, int], tuple[int, int]] = {}
-    for own in tracks.values():
-        for one, other in combinations(own, 2):
-            times, others = states.t_ns[one], states.t_ns[other]
-            if _interleaved_count(times, others) >= LEAST_INTERLEAVED_STATES:
-                pair = int(run[one[0]]), int(run[other[0]])
-                since, until = max(int(times[0]), int(others[0])), min(int(times[-1]), int(others[-1]))
-                known = spans.get(pair, (since, until))
-                spans[pair] = min(known[0], since), max(known[1], until)
+    for pieces in tracks.values():
+        for first, second in combinations(pieces, 2):
+            times, second_times = states.t_ns[first], states.t_ns[second]
+            if _interleaved_count(times, second_times) >= LEAST_INTERLEAVED_STATES:
+                pair = int(run[first[0]]), int(run[second[0]])
+                since, until = max(int(times[0]), int(second_times[0])), min(int(times[-1]), int(second_times[-1]))
+                span = spans.get(pair, (since, until))
+                spans[pair] = min(span[0], since), max(span[1], until)
     return spans
 
 
@@ -115,7 +115,7 @@ def _equal_repetitions(states: States, rows: Mask) -> Mask:
     ordered = states.take(chosen_rows)
     again, of = repetition_mask_and_index_without_repetitions(ordered)
     several = np.bincount(of) > 1
-    other = again & np.any(list(value_changes_by_column(ordered).values()), axis=0)
-    contradicted = np.bincount(of[other], minlength=len(several)) > 0
+    differs = again & np.any(list(value_changes_by_column(ordered).values()), axis=0)
+    contradicted = np.bincount(of[differs], minlength=len(several)) > 0
     agreed[chosen_rows] = (several & ~contradicted)[of]
     return agreed

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 DRIVE_CONDITION_VALUES: Final = {name: words_of_vocabulary(name) for name in words_of_vocabulary("condition")}
 """Condition of a drive -> its words; includes `engaged`: whether the automated driver drives."""
-RULE_CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
+RULE_CONDITION_VALUES: Final = {name: words for name, words in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
 """Condition -> a text on what its words mean."""
@@ -38,7 +38,7 @@ def value_problem(condition: str, word: str) -> str | None:
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
     """Return a condition and its word in drivelint's spelling, whatever their case; unknown words stay as they are."""
     condition = _NAME_BY_CASEFOLD.get(condition.casefold(), condition)
-    spelled = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
+    spelled = {spelling.casefold(): spelling for spelling in DRIVE_CONDITION_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY_CODE.fullmatch(word.casefold())
     return condition, spelled.get(word.casefold(), word.casefold() if country else word)
 

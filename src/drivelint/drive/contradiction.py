@@ -107,8 +107,8 @@ def remove_contradictions(
         text = "for half a second or longer, the velocity does not match the positions: the velocity is unknown"
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_OF_STATES_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
-    for each in places:
-        findings += _rejected_position_overlap_findings(states, step, actors, each, split_tracks.old_id_by_id)
+    for place in places:
+        findings += _rejected_position_overlap_findings(states, step, actors, place, split_tracks.old_id_by_id)
     turned, sideways = _backward_and_sideways_heading_samples(states, step, actors)
     yaw = states.numbers["yaw_rad"]
     text = COUNT_OF_STATES_PREFIX + "the heading is opposite to the motion: the direction of motion is used"
@@ -137,19 +137,19 @@ def _rejected_position_overlap_findings(
     other_row = placed_rows[np.arange(len(place)) - np.repeat(np.cumsum(n) - n, n) + first[place]]
     away = np.hypot(*(rejected_states.place[:, place] - states.place[:, other_row]))
     own_names = [rejected_states.ids[i] for i in rejected_states.actor]
-    own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
+    ego_half = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
     # in the log, the track after a jump belongs to the same actor
     in_log = np.array([old_id_by_id.get(name, name) for name in states.ids], dtype=np.str_)
     own_in_log = np.array([old_id_by_id.get(name, name) for name in own_names], dtype=np.str_)
-    upon = (away <= own + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
+    upon = (away <= ego_half + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
     findings = []
     for number in np.unique(rejected_states.actor[place[upon]]):
         name = rejected_states.ids[number]
         rows = upon & (rejected_states.actor[place] == number)
-        others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
+        names = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
         message = (
-            f"a position of {name} that is not credible overlaps {name_list(others)}: whether they touched is unknown"
+            f"a position of {name} that is not credible overlaps {name_list(names)}: whether they touched is unknown"
         )
         findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
@@ -178,9 +178,9 @@ def _contradictory_positions(states: States, step: Steps) -> Mask:
         return np.zeros(n, np.bool_)
     ends = np.ones(n + 1, np.bool_)  # at the end of a track, the one step beside the sample decides
     ends[1:-1] = alone | ~usable
-    both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
-    moved = is_contradiction(went, led, slack + SINGLE_STEP_MISMATCH_M - POSITION_VELOCITY_MISMATCH_M)
-    beside = both | np.r_[moved, False] | np.r_[False, moved]
+    at_both_ends = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
+    by_far = is_contradiction(went, led, slack + SINGLE_STEP_MISMATCH_M - POSITION_VELOCITY_MISMATCH_M)
+    beside = at_both_ends | np.r_[by_far, False] | np.r_[False, by_far]
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
     first, last = _first_and_last_rows_within_half_second(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
@@ -239,28 +239,28 @@ def _contradictory_velocities(states: States, step: Steps) -> Mask:
     np.maximum(np.abs(went, out=went), np.abs(led, out=led), out=went)
     fastest = np.hypot(*went)
     del went, led
-    allowed = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
-    wrong = whole & (off > allowed) & (_sliding_max(alone, k) < LEAST_SHARE_OF_DIFFERENCE_IN_ONE_STEP * off * span)
+    tolerance = STRETCH_MISMATCH_MPS + STRETCH_MISMATCH_SHARE * fastest + _sliding_max(slack, k) / span
+    wrong = whole & (off > tolerance) & (_sliding_max(alone, k) < LEAST_SHARE_OF_DIFFERENCE_IN_ONE_STEP * off * span)
     if not wrong.any():
         return mismatched
     sigma = noise_of_samples_m(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
-    wrong &= off > allowed + POSITION_NOISE_SIGMAS_IN_TOLERANCE * np.sqrt(2.0) * sigma[:-k] / span
+    wrong &= off > tolerance + POSITION_NOISE_SIGMAS_IN_TOLERANCE * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
     np.add.at(edges, rows + k + 1, -1)
     mismatched = np.cumsum(edges[:-1]) > 0
     wrong_by_actor, all_by_actor = (
-        np.bincount(who, minlength=len(states.ids)) for who in (states.actor[mismatched], states.actor)
+        np.bincount(actor, minlength=len(states.ids)) for actor in (states.actor[mismatched], states.actor)
     )
-    many = wrong_by_actor > MOST_CONTRADICTORY_SHARE_OF_TRACK * all_by_actor
-    return mismatched & ~many[states.actor]
+    is_mostly_wrong = wrong_by_actor > MOST_CONTRADICTORY_SHARE_OF_TRACK * all_by_actor
+    return mismatched & ~is_mostly_wrong[states.actor]
 
 
 def _sliding_max(values: Floats, width: int) -> Floats:
     """Return the largest of every k neighbouring values: m - k + 1 of m values."""
-    most: Floats = np.lib.stride_tricks.sliding_window_view(values, width).max(axis=1)
-    return most
+    maxima: Floats = np.lib.stride_tricks.sliding_window_view(values, width).max(axis=1)
+    return maxima
 
 
 def _first_and_last_rows_within_half_second(
@@ -282,11 +282,11 @@ def _rows_with_motion_direction(states: States, rows: Mask) -> Mask:
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
     way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
-    kept = rows.copy()
-    kept[marked_rows] = way > np.maximum(
+    moving_rows = rows.copy()
+    moving_rows[marked_rows] = way > np.maximum(
         DIRECTION_LEAST_DISPLACEMENT_M, DIRECTION_LEAST_SHARE_OF_DISTANCE * speed * span
     )
-    return kept
+    return moving_rows
 
 
 def _backward_and_sideways_heading_samples(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
@@ -310,12 +310,12 @@ def _backward_and_sideways_heading_samples(states: States, step: Steps, actors: 
         moving & (speed > LEAST_SPEED_OF_SIDEWAYS_MOTION_MPS) & (off > LEAST_ANGLE_OF_SIDEWAYS_MOTION_RAD) & ~backwards
     )
     turn = np.where(step.same_actor, np.abs(wrap_angles(np.diff(yaw))), 0.0)
-    nothing = np.zeros(n, np.bool_)
+    no_sample = np.zeros(n, np.bool_)
     if not (backwards.any() or across.any()):
-        return nothing, nothing
+        return no_sample, no_sample
     backwards, across = _rows_with_motion_direction(states, backwards), _rows_with_motion_direction(states, across)
     forwards = moving & ~backwards & ~across
-    turned, sideways = nothing, nothing.copy()
+    turned, sideways = no_sample, no_sample.copy()
     row = np.arange(n)
     # for each row: the last forward row before it, the first one after it, and the number of heading flips until it
     went = np.maximum.accumulate(np.where(forwards, row, -1))
@@ -330,8 +330,8 @@ def _backward_and_sideways_heading_samples(states: States, step: Steps, actors: 
             and speed[end] < FASTEST_REVERSE_START_MPS
         )
 
-    for rows, out, most in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, MOST_TURN_IN_SLIDE_RAD)):
-        turns = turn > most
+    for rows, out, largest_turn in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, MOST_TURN_IN_SLIDE_RAD)):
+        turns = turn > largest_turn
         for first, last in _first_and_last_rows_of_runs(states, rows):
             seam = (first > 0 and step.same_actor[first - 1]), (last < n - 1 and step.same_actor[last])
             broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])

@@ -38,12 +38,12 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     codes = states.codes.get(HEADLIGHTS)
     if codes is None or not (codes >= 0).any():
         return events
-    changed = np.r_[True, (states.actor[1:] != states.actor[:-1]) | (codes[1:] != codes[:-1])]
-    told = np.bincount(states.actor[codes >= 0], minlength=len(states.ids)) > 0
+    is_change = np.r_[True, (states.actor[1:] != states.actor[:-1]) | (codes[1:] != codes[:-1])]
+    has_lights = np.bincount(states.actor[codes >= 0], minlength=len(states.ids)) > 0
     if events is not None:
         declared = set(events.filter(pc.equal(events["event"], HEADLIGHTS))["actor_id"].to_pylist())
-        told &= [name not in declared for name in states.ids]
-    rows = np.flatnonzero(changed & told[states.actor])
+        has_lights &= [name not in declared for name in states.ids]
+    rows = np.flatnonzero(is_change & has_lights[states.actor])
     lamps = pa.table(
         {
             "t_ns": states.t_ns[rows],

@@ -55,7 +55,7 @@ def choose_egos(
     if not egos:
         absent = "the log does not name the ego" + (f" ({why})" if why else "")
         if named_egos:
-            absent = f"the log's ego {name_list([repr(each) for each in named_egos])} has no states"
+            absent = f"the log's ego {name_list([repr(name) for name in named_egos])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {name_list(actors.ids)})"
         if not ego_required:
             return [], [QualityFinding("no_ego", "warning", message)]
@@ -72,16 +72,16 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
         return []
     findings = []
     for i in (actors.ids.index(name) for name in egos):
-        known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
-        if any(map(isnan, known)):
+        sizes_of_log = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
+        if any(map(isnan, sizes_of_log)):
             message = "size from --ego-size, not recorded"
             findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", message, actor_id=actors.ids[i]))
-        for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
+        for name, has, option in zip(SIZE_COLUMNS, sizes_of_log, size[:2], strict=False):
             if isnan(has):
-                actors.sizes[name][i] = given
-            elif abs(has - given) > MOST_UNREPORTED_SIZE_DIFFERENCE_M:
+                actors.sizes[name][i] = option
+            elif abs(has - option) > MOST_UNREPORTED_SIZE_DIFFERENCE_M:
                 message = (
-                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log "
+                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {option:g} m, but the log "
                     f"states {has:g} m: the value of the log is used"
                 )
                 findings.append(QualityFinding("ego_size", "warning", message, actor_id=actors.ids[i]))

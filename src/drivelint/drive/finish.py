@@ -73,7 +73,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     recorded_findings = recording.findings if ego_option is None else absence.without_ego_choices(recording.findings)
     findings = [*recorded_findings, *picked, *lost_findings, *restarts, *repeated]
     assumed = any(f.check_id == ASSUMED_MOTION_CHECK for f in recording.findings)
-    states, step, split, jumped = _split_at_jumps(
+    states, step, split_tracks, jumped = _split_at_jumps(
         states, recording.ego_ids if ego_option is None else [ego_option], is_motion_assumed=assumed
     )
     findings += jumped
@@ -85,18 +85,18 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors, varying = actor_rows.from_states(states)
         findings += varying
     else:
-        actors = actor_rows.from_table(recording.actors, states, split.old_id_by_id)
-    egos, chosen = ego.choose_egos(
+        actors = actor_rows.from_table(recording.actors, states, split_tracks.old_id_by_id)
+    egos, choice_findings = ego.choose_egos(
         path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego, why=recording.why_no_ego
     )
-    findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
+    findings += [*choice_findings, *ego.fill_sizes(actors, egos, options.ego_size)]
     findings += actor_rows.correct_sizes(states, actors)
-    checked = checks.quality_findings(states, step, actors, derived_velocities=derived)
-    _refuse_wrong_units(path, recording, checked)
-    findings += checked
+    check_findings = checks.quality_findings(states, step, actors, derived_velocities=derived)
+    _refuse_wrong_units(path, recording, check_findings)
+    findings += check_findings
     if not assumed:
         findings += contradiction.remove_contradictions(
-            states, step, actors, derived_velocities=derived, split_tracks=split
+            states, step, actors, derived_velocities=derived, split_tracks=split_tracks
         )
         findings += implausible_motion_findings(states, step, actors, derived_velocities=derived)
         findings += [
@@ -105,13 +105,13 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             *repeated_end_position_findings(states, actors),
         ]
     findings += _unknown_ego_light_findings(states, egos)
-    missed = [each for each in missed if each.ego_id in egos]
+    missed = [absence for absence in missed if absence.ego_id in egos]
     states = absence.with_unknown_ego_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
-    states, moved = align_to_ego_steps(states, egos)
+    states, alignment_findings = align_to_ego_steps(states, egos)
     states = states if recorded is None else recorded.with_all_columns()
     tables = _trace_tables(identity, recording, options, states=states, actors=actors, egos=egos)
-    tables["quality"] = _quality_table(identity.drive_id, [*findings, *moved], recording.format)
+    tables["quality"] = _quality_table(identity.drive_id, [*findings, *alignment_findings], recording.format)
     tables["doubt"] = _doubt_table(identity.drive_id, findings, recording.format)
     return Trace(
         identity.drive_id,
@@ -133,18 +133,18 @@ def _split_at_jumps(
     states: States, named_egos: list[str], *, is_motion_assumed: bool
 ) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
     """Split the tracks at jumps, except those of named egos; return the states, their steps, the split and findings."""
-    step, split, findings = steps(states), jumps.NO_SPLIT, []
+    step, split_tracks, findings = steps(states), jumps.NO_SPLIT, []
     if not is_motion_assumed:
-        states, gone = jumps.cut_tracks_of_destroyed_actors(states, step, kept_ids=named_egos)
-        step = steps(states) if gone else step
-        split = jumps.split_tracks(states, step, kept_ids=named_egos)
-        findings = [*gone, *split.findings]
-    if split.old_id_by_id:
+        states, cut_findings = jumps.cut_tracks_of_destroyed_actors(states, step, kept_ids=named_egos)
+        step = steps(states) if cut_findings else step
+        split_tracks = jumps.split_tracks(states, step, kept_ids=named_egos)
+        findings = [*cut_findings, *split_tracks.findings]
+    if split_tracks.old_id_by_id:
         states = sorted_states(states)
         step = steps(states)
     if "yaw_rad" in states.numbers:
         states.numbers["yaw_rad"] = wrap_angles(states.numbers["yaw_rad"])
-    return states, step, split, findings
+    return states, step, split_tracks, findings
 
 
 def _trace_tables(

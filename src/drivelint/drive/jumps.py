@@ -105,11 +105,11 @@ def jump_steps(states: States, step: Steps) -> Mask:
     n_neighbours, n_against = np.zeros(len(rows), np.int8), np.zeros(len(rows), np.int8)
     for side in (-1, 1):
         beside = np.clip(rows + side, 0, len(dt) - 1)
-        known = (beside == rows + side) & step.continuous[beside] & np.isfinite(way[0, beside])
+        has_neighbour = (beside == rows + side) & step.continuous[beside] & np.isfinite(way[0, beside])
         scale = dt[rows] / dt[beside]
         off = np.hypot(*(way[:, rows] - scale * way[:, beside])) > limit[rows]
-        n_neighbours += known
-        n_against += known & off
+        n_neighbours += has_neighbour
+        n_against += has_neighbour & off
     far[rows] = (n_neighbours > 0) & (n_against == n_neighbours)
     return far
 
@@ -169,8 +169,8 @@ def _give_ids_to_pieces_and_return_old_ids(
     alias: dict[str, str] = {}
     if not pieces.any():
         return alias
-    kept = {i for i, name in enumerate(states.ids) if name in kept_ids}
-    keys = np.where(np.isin(states.actor, list(kept)), 0, pieces)
+    whole_tracks = {i for i, name in enumerate(states.ids) if name in kept_ids}
+    keys = np.where(np.isin(states.actor, list(whole_tracks)), 0, pieces)
     ids, actor = list(states.ids), states.actor.copy()
     for i in np.unique(states.actor[keys > 0]):
         for number in range(1, int(keys[states.actor == i].max()) + 1):
@@ -209,11 +209,11 @@ def cut_tracks_of_destroyed_actors(
         spread = np.ptp(place[:, first:end], axis=1).max()
         if spread <= SAME_POSITION_TOLERANCE_M and end - first > 1:
             parked.append((first, end))
-    gone = [a for a in parked if any(b != a and _stand_together(states, place, a, b) for b in parked)]
-    if not gone:
+    tracks = [a for a in parked if any(b != a and _stand_together(states, place, a, b) for b in parked)]
+    if not tracks:
         return states, []
     out = np.zeros(len(states), np.bool_)
-    for first, end in gone:
+    for first, end in tracks:
         out[first:end] = True
     text = "after a jump, several actors stand at the same position: they count as removed from the scene, and their tracks end at the jump"
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_OF_STATES_PREFIX + text)

@@ -69,9 +69,9 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
         ]
     start = int(t_ns.min())
     findings = []
-    for each in lost_times:
-        since, until = _span_in_clock_of_states(each, frames)
-        message = f"{each.cause}: the recording {_stretch_text(since, until, start)} is lost: no rule is judged across this time"
+    for lost_time in lost_times:
+        since, until = _span_in_clock_of_states(lost_time, frames)
+        message = f"{lost_time.cause}: the recording {_stretch_text(since, until, start)} is lost: no rule is judged across this time"
         findings.append(QualityFinding(LOST_TIME_CHECK, "error", message, 1, since, None, until))
     return findings
 

@@ -131,10 +131,10 @@ def _filtered_velocity_findings(states: States, rows: Mask) -> list[QualityFindi
         f"the positions of {{ids}} are noisy: the velocity is a mean over up to two seconds, known to "
         f"{LARGEST_VELOCITY_ERROR_MPS:g} m/s, the acceleration is not known"
     )
-    found = []
+    findings = []
     for number in np.unique(states.actor[rows]):
-        found += states.findings(rows & (states.actor == number), "velocity_filtered", "warning", text)
-    return found
+        findings += states.findings(rows & (states.actor == number), "velocity_filtered", "warning", text)
+    return findings
 
 
 def _actors_with_velocity_mismatch(states: States, step: Steps, most_replaced_share: float) -> Mask:
@@ -144,11 +144,11 @@ def _actors_with_velocity_mismatch(states: States, step: Steps, most_replaced_sh
     if n <= k or most_replaced_share == 0.0 or not _may_velocities_mismatch(states, k):
         return wrong
     went, led, whole, span = motion_over_steps(states, step, steps_with_known_motion(states, step), k)
-    off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
-    fastest = np.maximum(moved, told)
+    off, way, way_by_velocity = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
+    fastest = np.maximum(way, way_by_velocity)
     moving = whole & (fastest > MISMATCH_MPS * span)
     # constant positions do not show how an actor moves: `contradiction` treats them
-    bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
+    bad = moving & (way > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHING_WINDOWS) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
@@ -163,10 +163,10 @@ def _actors_with_biased_speed(states: States, step: Steps, most_replaced_share: 
     biased, n = np.zeros(len(states.ids), np.bool_), len(states)
     if n < 3 or most_replaced_share == 0.0:
         return biased
-    known = steps_with_known_motion(states, step)
-    if _actors_with_factor(states, step, known, most_replaced_share).any():
-        known &= ~_frozen_steps(states, step, known)
-        return _actors_with_factor(states, step, known, most_replaced_share)
+    usable_steps = steps_with_known_motion(states, step)
+    if _actors_with_factor(states, step, usable_steps, most_replaced_share).any():
+        usable_steps &= ~_frozen_steps(states, step, usable_steps)
+        return _actors_with_factor(states, step, usable_steps, most_replaced_share)
     return biased
 
 

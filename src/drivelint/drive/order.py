@@ -55,9 +55,9 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
         name: np.bincount(of[repeated & rows], minlength=len(unique_states)) > 0
         for name, rows in value_changes_by_column(states).items()
     }
-    moved = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
+    differs_in_state = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
     for name, values in unique_states.numbers.items():
-        values[differ[name] | moved if name in STATE_COLUMNS else differ[name]] = np.nan
+        values[differ[name] | differs_in_state if name in STATE_COLUMNS else differ[name]] = np.nan
     for name, codes in unique_states.codes.items():
         codes[differ[name]] = UNKNOWN_CODE
     differing = repeated & np.logical_or.reduce(list(differ.values()))[of]
@@ -130,8 +130,10 @@ def _track_periods_ns(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> 
     for i, (first, end) in enumerate(pairwise([*starts.tolist(), len(t_ns)])):
         dt = np.diff(t_ns[first:end])
         if len(dt) and dt.max() > MAX_GAP_PERIODS * period_ns:
-            own = int(np.partition(dt, (len(dt) - 1) // 4)[(len(dt) - 1) // 4])
-            periods[i] = max(own, period_ns) if own <= LONGEST_INTERPOLATED_PERIOD_NS else period_ns
+            track_period_ns = int(np.partition(dt, (len(dt) - 1) // 4)[(len(dt) - 1) // 4])
+            periods[i] = (
+                max(track_period_ns, period_ns) if track_period_ns <= LONGEST_INTERPOLATED_PERIOD_NS else period_ns
+            )
     return np.repeat(periods, np.diff(np.r_[starts, len(t_ns)]))
 
 
@@ -153,10 +155,10 @@ def time_derivative(values: Floats, step: Steps) -> Floats:
 
 def steps_with_known_motion(states: States, step: Steps) -> Mask:
     """Return the mask of the steps (n - 1) that are continuous and whose position and velocity are known at both ends."""
-    known = np.ones(len(states), np.bool_)
+    has_motion = np.ones(len(states), np.bool_)
     for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
-        known &= np.isfinite(states.numbers[name])
-    return step.continuous & known[1:] & known[:-1]
+        has_motion &= np.isfinite(states.numbers[name])
+    return step.continuous & has_motion[1:] & has_motion[:-1]
 
 
 def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:

@@ -104,8 +104,10 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
     false_zero = still & (
         np.nan_to_num(extent_by_track(place, starts)).max(axis=0) > LEAST_POSITION_SPREAD_OF_MOVING_ACTOR_M
     )
-    told: Mask = np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
-    return told
+    is_recorded: Mask = (
+        np.isfinite(v[0]) & np.isfinite(v[1]) & ~np.repeat(false_zero, np.diff(np.r_[starts, len(states)]))
+    )
+    return is_recorded
 
 
 def _samples_off_path(

@@ -45,9 +45,9 @@ def _rows_between_and_still_valid_before(rows: pa.Table, keys: list[str], from_n
     """Return the rows of the span and, for each key, the last row before it."""
     before = rows.filter(pc.less(rows["t_ns"], from_ns))
     last = before.group_by(keys).aggregate([("t_ns", "max")]).rename_columns([*keys, "t_ns"])
-    held = before.join(last, [*keys, "t_ns"], join_type="left semi", use_threads=False).select(rows.column_names)
+    valid = before.join(last, [*keys, "t_ns"], join_type="left semi", use_threads=False).select(rows.column_names)
     order = [(name, "ascending") for name in ("t_ns", *keys)]
-    return pa.concat_tables([held, _rows_between(rows, from_ns, to_ns)]).sort_by(order).cast(rows.schema)
+    return pa.concat_tables([valid, _rows_between(rows, from_ns, to_ns)]).sort_by(order).cast(rows.schema)
 
 
 def _log_row_of_states(log: pa.Table, states: pa.Table) -> pa.Table:

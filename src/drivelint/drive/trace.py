@@ -254,8 +254,8 @@ class States:
 
     def with_all_columns(self) -> States:
         """Return the rows with every column of `STATE_COLUMNS`; columns that the log lacks are unknown."""
-        nothing = {name: np.full(len(self), np.nan) for name in STATE_COLUMNS if name not in self.numbers}
-        return States(self.ids, self.actor, self.t_ns, self.numbers | nothing, self.codes, self.not_finite)
+        missing_columns = {name: np.full(len(self), np.nan) for name in STATE_COLUMNS if name not in self.numbers}
+        return States(self.ids, self.actor, self.t_ns, self.numbers | missing_columns, self.codes, self.not_finite)
 
     def take(self, rows: Indices | Mask | slice) -> States:
         """Return the chosen rows (indices, a mask or a slice), ids unchanged."""

@@ -46,13 +46,13 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
     """Derive velocities from positions (2, n) in metres, sorted by actor and time; `actor` (n): the actor's number."""
     v = time_derivative(place, step)
     filtered = np.zeros(len(t_ns), np.bool_)
-    placed = np.flatnonzero(np.isfinite(place).all(axis=0))
-    if not 0 < step.period_ns <= LONGEST_SAMPLING_PERIOD_TO_FILTER_NS or not len(placed):
+    with_place = np.flatnonzero(np.isfinite(place).all(axis=0))
+    if not 0 < step.period_ns <= LONGEST_SAMPLING_PERIOD_TO_FILTER_NS or not len(with_place):
         return DerivedVelocity(v, filtered)
     # a filter does not need a sample at every step: it continues over a single sample without a position
-    of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.track_period_ns[placed])
-    v[:, placed], filtered[placed] = _filtered_velocities(
-        t_ns[placed], actor[placed], place[:, placed], of, v[:, placed]
+    of = steps_between(t_ns[with_place], actor[with_place], step.period_ns, step.track_period_ns[with_place])
+    v[:, with_place], filtered[with_place] = _filtered_velocities(
+        t_ns[with_place], actor[with_place], place[:, with_place], of, v[:, with_place]
     )
     return DerivedVelocity(v, filtered)
 
@@ -121,11 +121,11 @@ class Tracklets(NamedTuple):
             return sums.take(end, axis=-1) - sums.take(low, axis=-1)
 
         # relative to the first sample of the tracklet, so that the sums do not lose precision
-        t, moved = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
+        t, way = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
         mean_t = sum_in_window(t) / n
         spread = sum_in_window(t * t) - n * mean_t * mean_t
         spread = np.where(spread > 1e-9, spread, np.nan)
-        slopes = (sum_in_window(t * moved) - mean_t * sum_in_window(moved)) / spread
+        slopes = (sum_in_window(t * way) - mean_t * sum_in_window(way)) / spread
         return slopes, np.where(np.isfinite(spread), 3.0 * noise_m / np.sqrt(spread), np.inf)
 
 
@@ -152,8 +152,8 @@ def noise_by_actor_m(coordinates: Floats, tracklets: Tracklets, actor: NDArray[n
     beside = coordinates[inner] - coordinates[inner - 1] - share * (coordinates[inner + 1] - coordinates[inner - 1])
     twice = np.abs(np.diff(beside))  # `whole` leaves out differences between samples of two tracklets
     whole = (tracklets.first[inner[:-1] - 1] == tracklets.first[inner[1:] + 1]) & np.isfinite(twice)
-    rows, who = twice[whole], actor[inner[:-1]][whole]
-    edges = np.searchsorted(who, np.arange(n_actors + 1))
+    rows, actor_of_row = twice[whole], actor[inner[:-1]][whole]
+    edges = np.searchsorted(actor_of_row, np.arange(n_actors + 1))
     for number in np.flatnonzero(np.diff(edges) >= LEAST_SAMPLES_TO_ESTIMATE_NOISE):
         noise_m[number] = 1.4826 * np.median(rows[edges[number] : edges[number + 1]]) / np.sqrt(5.0)
     return noise_m

@@ -34,6 +34,6 @@ def judge_and_refuse_faulty(session: JudgingSession, drives: Sequence[Drive], re
             return
         # sorted like the rows of a batch, so that files that grow with the batches do not depend on the split
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
-        many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
-        for at in range(0, len(drives), many):
-            judge_and_refuse_faulty(session, drives[at : at + many], refusals)
+        part_size = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
+        for at in range(0, len(drives), part_size):
+            judge_and_refuse_faulty(session, drives[at : at + part_size], refusals)

@@ -73,13 +73,13 @@ class Drive:
         ends = np.r_[np.flatnonzero(np.diff(code)), len(code) - 1]
         starts = np.r_[0, ends[:-1] + 1]
         first, last = np.sort(t_ns[starts]), np.sort(t_ns[ends])
-        found = {}
+        n_pairs = {}
         for name, start, end in zip(names, starts, ends, strict=True):
             if name in egos:
                 steps = t_ns[start : end + 1]
                 there = np.searchsorted(first, steps, side="right") - np.searchsorted(last, steps, side="left")
-                found[name] = int(there.sum())
-        return dict(sorted(found.items()))
+                n_pairs[name] = int(there.sum())
+        return dict(sorted(n_pairs.items()))
 
     @property
     def size_in_states_or_pairs(self) -> int:
@@ -169,15 +169,15 @@ def egos_to_skip_by_part(drives: Sequence[Drive], pairs_per_part: int | None = N
     `EGO_ACTOR_PAIRS_PER_PART`). The results do not depend on the split.
     """
     pairs = drives[0].pairs_by_ego if len(drives) == 1 else {}
-    found: list[list[str]] = []
+    parts: list[list[str]] = []
     left = 0
     for ego, n in pairs.items():
-        if not found or n > left:
-            found.append([])
+        if not parts or n > left:
+            parts.append([])
             left = EGO_ACTOR_PAIRS_PER_PART if pairs_per_part is None else pairs_per_part
-        found[-1].append(ego)
+        parts[-1].append(ego)
         left -= n
-    return [[ego for ego in pairs if ego not in part] for part in map(set, found)] or [[]]
+    return [[ego for ego in pairs if ego not in part] for part in map(set, parts)] or [[]]
 
 
 def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:

@@ -46,24 +46,26 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     states = trace.tables["actor_state"]
     columns = {c: floats(states[c]).copy() for c in states.column_names if pa.types.is_floating(states[c].type)}
     xy = np.stack([columns["x_m"], columns["y_m"]], axis=1)
-    placed = np.isfinite(xy).all(axis=1)
-    if not placed.any():
+    has_place = np.isfinite(xy).all(axis=1)
+    if not has_place.any():
         return trace
-    low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
+    low, high = xy[has_place].min(axis=0), xy[has_place].max(axis=0)
     turn, stretch = _rotation_and_scale(log_frame, map_frame, low, high)
     # a second point, one metre from each position, shows by which angle headings turn there
     there, beside = np.split(
-        _log_to_map_coordinates(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])),
+        _log_to_map_coordinates(
+            log_frame, map_frame, np.concatenate([xy[has_place], xy[has_place] + np.array([1.0, 0.0])])
+        ),
         2,
     )
     now = replace(
         trace, geo_reference=map_frame.reference, geo_offset=(map_frame.x_m, map_frame.y_m, map_frame.yaw_rad)
     )
-    if np.abs(there - xy[placed]).max() < SAME_POSITION_M:
+    if np.abs(there - xy[has_place]).max() < SAME_POSITION_M:
         return now
     angle = np.full(len(xy), turn)
-    angle[placed] = np.arctan2(*(beside - there).T[::-1])
-    columns["x_m"][placed], columns["y_m"][placed] = there.T
+    angle[has_place] = np.arctan2(*(beside - there).T[::-1])
+    columns["x_m"][has_place], columns["y_m"][has_place] = there.T
     columns["yaw_rad"] = wrap_angles(columns["yaw_rad"] + angle)
     for x, y in (("vx_mps", "vy_mps"), ("ax_mps2", "ay_mps2")):
         if x in columns:
@@ -72,8 +74,8 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         f"the log's coordinates are {log_frame.reference!r}, the map's {map_frame.reference!r}: the log is moved into the map's, turned by "
         f"{math.degrees(turn):.4f} degrees, lengths times {stretch:.5f}"
     )
-    moved = replace(now, tables={**trace.tables, "actor_state": replace_columns(states, columns)})
-    return with_quality_finding(moved, QualityFinding("moved_to_map", "info", message))
+    trace_on_map = replace(now, tables={**trace.tables, "actor_state": replace_columns(states, columns)})
+    return with_quality_finding(trace_on_map, QualityFinding("moved_to_map", "info", message))
 
 
 def is_far_from_projection(environment: MapTables) -> bool:

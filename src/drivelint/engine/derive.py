@@ -79,11 +79,11 @@ def derive(
                     filled.append(table)
                 else:
                     cursor = free.pop()
-                    done = pool.submit(_fill_table, cursor, todo[table], types, has_old_rows=table in old)
-                    busy[done] = table, cursor
-            for done in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
-                table, cursor = busy.pop(done)
-                if not done.result():
+                    future = pool.submit(_fill_table, cursor, todo[table], types, has_old_rows=table in old)
+                    busy[future] = table, cursor
+            for future in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
+                table, cursor = busy.pop(future)
+                if not future.result():
                     empty.add(table)
                 free.append(cursor)
                 filled.append(table)

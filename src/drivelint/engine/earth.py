@@ -47,8 +47,8 @@ def frame_of_map(environment: MapTables) -> GeoFrame | None:
     (row,) = environment.tables["environment"].to_pylist()
     if not row["geo_usable"]:
         return None
-    own = GeoFrame(row["geo_reference"], *(row[f"geo_offset_{name}"] for name in ("x_m", "y_m", "z_m", "yaw_rad")))
-    return own.after_shift(row["offset_x_m"], row["offset_y_m"])
+    frame = GeoFrame(row["geo_reference"], *(row[f"geo_offset_{name}"] for name in ("x_m", "y_m", "z_m", "yaw_rad")))
+    return frame.after_shift(row["offset_x_m"], row["offset_y_m"])
 
 
 def set_longitude_and_latitude(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:

@@ -68,15 +68,17 @@ def compare_headings_with_lanes(
 
     `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. At most `max_positions`, evenly spread, are used.
     """
-    known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
-    if len(known) < LEAST_DRIVING_SIDE_VOTES or not len(lanes.lines):
+    with_pose = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
+    if len(with_pose) < LEAST_DRIVING_SIDE_VOTES or not len(lanes.lines):
         return LaneHeadings(np.zeros(0, np.bool_), np.zeros(0, np.intp))
-    chosen = known[np.unique(np.linspace(0, len(known) - 1, min(max_positions, len(known))).astype(np.int64))]
-    points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
+    sample = with_pose[
+        np.unique(np.linspace(0, len(with_pose) - 1, min(max_positions, len(with_pose))).astype(np.int64))
+    ]
+    points = np.asarray(shapely.points(x_m[sample], y_m[sample]))
     state, lane = lanes.areas.query(points, predicate="intersects")
-    single = np.bincount(state, minlength=len(chosen))[state] == 1
+    single = np.bincount(state, minlength=len(sample))[state] == 1
     state, lane = state[single], lane[single]
-    return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading_of_lines(lanes.lines[lane], points[state])) > 0, lane)
+    return LaneHeadings(np.cos(yaw_rad[sample][state] - _heading_of_lines(lanes.lines[lane], points[state])) > 0, lane)
 
 
 def vote_handedness(lanes_handedness: str, headings: LaneHeadings) -> str | None:
@@ -111,14 +113,14 @@ def road_with_reversed_traffic(lanes: OneWayLanes, headings: LaneHeadings) -> st
             return road
     lane, counts = np.unique(against, return_counts=True)
     often = lane[counts >= LEAST_STEPS_AGAINST_LANE_EACH_WAY]
-    one, other = (often[k] for k in np.triu_indices(len(often), 1))
-    near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
+    first, second = (often[k] for k in np.triu_indices(len(often), 1))
+    near = shapely.shortest_line(lanes.lines[first], lanes.lines[second])
     heading, back = (
-        _heading_of_lines(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((one, 0), (other, -1))
+        _heading_of_lines(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((first, 0), (second, -1))
     )
     facing = np.cos(heading - back) < -LEAST_OPPOSITE_LANE_COSINE
-    found = facing & (shapely.length(near) < FARTHEST_NEIGHBOUR_LANE_M)
-    return min((str(lanes.road[k]) for k in one[found]), default=None)
+    is_two_way_road = facing & (shapely.length(near) < FARTHEST_NEIGHBOUR_LANE_M)
+    return min((str(lanes.road[k]) for k in first[is_two_way_road]), default=None)
 
 
 def _heading_of_lines(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
@@ -126,8 +128,8 @@ def _heading_of_lines(line: NDArray[np.object_], points: NDArray[np.object_]) ->
     at = shapely.line_locate_point(line, points)
     ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
     behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
-    found: Floats = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
-    return found
+    heading: Floats = np.arctan2(ahead[:, 1] - behind[:, 1], ahead[:, 0] - behind[:, 0])
+    return heading
 
 
 def lane_areas(environment: MapTables) -> shapely.STRtree:
@@ -142,15 +144,17 @@ def count_examined_and_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) 
 
     `FIRST_POSITIONS` are examined first; only if none of them is on a lanelet, `MOST_POSITIONS` are examined.
     """
-    known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
-    looked = found = 0
+    with_place = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
+    n_examined = n_on_map = 0
     for max_positions in (FIRST_POSITIONS, MOST_POSITIONS):
-        if found or looked == len(known):
+        if n_on_map or n_examined == len(with_place):
             break
-        chosen = known[np.unique(np.linspace(0, len(known) - 1, min(max_positions, len(known))).astype(np.int64))]
-        points = np.asarray(shapely.points(x_m[chosen], y_m[chosen]))
-        looked, found = len(chosen), len(np.unique(lanes.query(points, predicate="intersects")[0]))
-    return looked, found
+        sample = with_place[
+            np.unique(np.linspace(0, len(with_place) - 1, min(max_positions, len(with_place))).astype(np.int64))
+        ]
+        points = np.asarray(shapely.points(x_m[sample], y_m[sample]))
+        n_examined, n_on_map = len(sample), len(np.unique(lanes.query(points, predicate="intersects")[0]))
+    return n_examined, n_on_map
 
 
 def _areas_and_centre_lines(

@@ -48,18 +48,18 @@ class MapFolder:
         for pattern, name in self._manifest:
             if fnmatchcase(log.name, pattern):
                 return self._source(name)
-        for wanted in (log.stem, log.resolve().parent.name):
-            same = [name for name, file in self._files.items() if file.stem == wanted]
+        for stem in (log.stem, log.resolve().parent.name):
+            same = [name for name, file in self._files.items() if file.stem == stem]
             if len(same) == 1:
                 return self._source(same[0])
         return None
 
     def with_reference(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference; None: not exactly one map has it."""
-        found = [
+        names = [
             source for source in self.sources() if is_same_reference(opendrive_geo_reference(source) or "", reference)
         ]
-        return found[0] if len(found) == 1 else None
+        return names[0] if len(names) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:
         """Return every map, sorted by name."""
@@ -73,15 +73,15 @@ class MapFolder:
             rows = csv.DictReader(lines, skipinitialspace=True)
             if not {"log", "map"} <= set(rows.fieldnames or ()):
                 raise MapError(f"{file}: write the columns log,map: a file name (or a glob) and the map it belongs to")
-            found = [(row["log"] or "", row["map"] or "") for row in rows]
-        for n, (pattern, name) in enumerate(found, 2):
+            pairs = [(row["log"] or "", row["map"] or "") for row in rows]
+        for n, (pattern, name) in enumerate(pairs, 2):
             if problem := glob_length_problem(pattern):
                 raise MapError(f"{file}:{n}: the glob in the column log has {problem}")
             if name not in self._files:
                 raise MapError(
                     f"{file}:{n}: there is no map {name!r} in {self.folder}; it has {name_list(list(self._files))}"
                 )
-        return found
+        return pairs
 
 
 def _is_map(file: Path) -> bool:

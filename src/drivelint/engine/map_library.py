@@ -115,31 +115,35 @@ class MapLibrary:
            mostly uses the coordinates of the map file, without its `<offset>`),
         3. for a log without a reference, projected coordinates, as SUMO's `--fcd-output.utm` writes them.
         """
-        refused = None
+        refusal = None
         try:
-            both = [common_frame.move_into_map_frame(trace, environment), trace]
+            candidates = [common_frame.move_into_map_frame(trace, environment), trace]
         except MapError as error:
-            both, refused = [trace], str(error)
+            candidates, refusal = [trace], str(error)
         theirs = environment.tables["environment"]["geo_reference"][0].as_py() or ""
         if not any(trace.geo_offset) and geo_reference.is_same_reference(trace.geo_reference or "", theirs):
-            both.reverse()
+            candidates.reverse()
         ground = self._ground(environment)
-        troubles = [_evidence_of_other_place(environment, ground, each.tables["actor_state"]) for each in both]
-        fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
+        troubles = [
+            _evidence_of_other_place(environment, ground, candidate.tables["actor_state"]) for candidate in candidates
+        ]
+        fitting = next(
+            (candidate for candidate, trouble in zip(candidates, troubles, strict=True) if not trouble), None
+        )
         if fitting is None and trace.geo_reference is None and common_frame.is_far_from_projection(environment):
             projected = common_frame.move_into_map_frame(replace(trace, geo_reference=theirs), environment)
             if not _evidence_of_other_place(environment, ground, projected.tables["actor_state"]):
                 fitting = with_quality_finding(projected, FITS_PROJECTION_FINDING)
-        return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
+        return (trace, refusal or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:
         """Return the source of the map that `find` uses for a drive. Errors: as `find`."""
-        own = MapSource("embedded", trace.embedded_map) if trace.embedded_map is not None else None
+        embedded = MapSource("embedded", trace.embedded_map) if trace.embedded_map is not None else None
         if self._map_folder is None:
-            return self._given or own
+            return self._given or embedded
         return (
             self._map_folder.for_log(trace.path)
-            or own
+            or embedded
             or (self._map_folder.with_reference(trace.geo_reference) if trace.geo_reference else None)
             or self._only_fitting_map(self._map_folder, trace)
         )
@@ -157,34 +161,35 @@ class MapLibrary:
         """
         if environment is None:
             return {NOT_IN_FOLDER_CHECK: text} if (text := self._without_map.get(trace.path)) else {}
-        found = {
+        texts = {
             "handedness_disagrees": self._driving_side_doubt(trace, environment),
             "map_unread": self._unread.get(trace.path),
         }
         reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
         if reference and theirs and geo_reference.is_conflicting_reference(reference, theirs):
-            found["geo_reference_differs"] = (
+            texts["geo_reference_differs"] = (
                 f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, set the "
                 "right --map or --map-offset"
             )
-        return {check: text for check, text in found.items() if text}
+        return {check: text for check, text in texts.items() if text}
 
     def _driving_side_doubt(self, trace: Trace, environment: MapTables) -> str | None:
         side, source = environment.handedness, environment.handedness_source
         if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._lane_headings(environment, trace.tables["actor_state"], map_fit.DRIVING_SIDE_CHECK_SAMPLES)
-        if road := map_fit.road_with_reversed_traffic(self._lanes(environment), seen):
+        headings = self._lane_headings(environment, trace.tables["actor_state"], map_fit.DRIVING_SIDE_CHECK_SAMPLES)
+        if road := map_fit.road_with_reversed_traffic(self._lanes(environment), headings):
             raise MapError(
                 f"map {_file_name(environment)}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
                 f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
                 f"{correction_hint(side, source)}, or use another map"
             )
-        if map_fit.vote_handedness(side, seen) in {None, side}:
+        if map_fit.vote_handedness(side, headings) in {None, side}:
             return None
-        said = "--handedness says" if source == "option" else f"the map states (by {source})"
+        statement = "--handedness says" if source == "option" else f"the map states (by {source})"
         return (
-            f"{said} {side}, the traces fit {opposite_side(side)}: of {len(seen.agree)} headings examined, {int((~seen.agree).sum())} are "
+            f"{statement} {side}, the traces fit {opposite_side(side)}: "
+            f"of {len(headings.agree)} headings examined, {int((~headings.agree).sum())} are "
             f"against the direction of their lane. {side} is used. If that is wrong, every direction is wrong: "
             f"{correction_hint(side, source)}."
         )
@@ -260,9 +265,9 @@ def _evidence_of_other_place(environment: MapTables, lanes: shapely.STRtree, sta
             f"its lanes lie in x {roads[0]:.0f}..{roads[1]:.0f}, y {roads[2]:.0f}..{roads[3]:.0f} m, "
             f"the drive in x {drive[0]:.0f}..{drive[1]:.0f}, y {drive[2]:.0f}..{drive[3]:.0f} m"
         )
-    looked, found = map_fit.count_examined_and_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
-    if looked and not found:
-        return f"none of the {looked} examined positions is on a lane or other area of the map"
+    n_examined, n_on_map = map_fit.count_examined_and_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
+    if n_examined and not n_on_map:
+        return f"none of the {n_examined} examined positions is on a lane or other area of the map"
     return None
 
 

@@ -53,9 +53,9 @@ class MemoryLimit:
         if not self.limited or self._limit is None:
             return False
         self.limited = False
-        given = store.set_and_return_default_memory_limit(self._con)
+        machine_limit = store.set_and_return_default_memory_limit(self._con)
         self._note(
-            f"{format_bytes(self._limit)} of memory are not enough (--memory): the database may use up to {given}"
+            f"{format_bytes(self._limit)} of memory are not enough (--memory): the database may use up to {machine_limit}"
         )
         return True
 
@@ -101,17 +101,17 @@ def peak_bytes() -> int | None:
         import resource
     except ImportError:  # Windows
         return None
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return most if sys.platform == "darwin" else most * 1024
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
 
 
 def free_bytes() -> int | None:
     """Return the available memory in bytes; None if the system does not report it."""
     try:
-        found = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
+        line = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
     except OSError:  # not Linux
         return None
-    return int(found[1]) * 1024 if found else None
+    return int(line[1]) * 1024 if line else None
 
 
 def format_bytes(n_bytes: int) -> str:

@@ -56,12 +56,12 @@ def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.T
 
     Errors: `UsageError` for an unknown name, with the nearest known one.
     """
-    chosen = set(selected or DEFAULT_PROFILES)
-    for name in sorted(chosen - profiles.keys()):
+    names = set(selected or DEFAULT_PROFILES)
+    for name in sorted(names - profiles.keys()):
         raise UsageError(f"no profile {name!r}; {hint(name, profiles)}")
     rows = []
     for name, profile in profiles.items():
-        row = {"profile": name, **msgspec.structs.asdict(profile), "selected": name in chosen}
+        row = {"profile": name, **msgspec.structs.asdict(profile), "selected": name in names}
         for angle in ("pull_out_angle", "cut_in_angle"):
             degrees = row.pop(f"{angle}_deg")
             row[f"{angle}_rad"] = None if degrees is None else math.radians(degrees)

@@ -144,13 +144,13 @@ class JudgingSession:
         """
         if not drives:
             return
-        done = False
+        is_complete = False
         self._limits.batches = sum(drive.size_in_states_or_pairs for drive in drives) / MAX_BATCH_STATES
-        while not done:
+        while not is_complete:
             try:
                 one_core = store.one_thread(self._con) if have_few_states(drives) else nullcontext()
                 with one_core, store.uniform_memory_errors(), self._interruption.interruptible(self._con):
-                    done = self._judge_if_memory_suffices(drives)
+                    is_complete = self._judge_if_memory_suffices(drives)
             except InterruptedRunError:
                 self._delete_drives(
                     [drive.trace.drive_id for drive in drives]
@@ -204,8 +204,8 @@ class JudgingSession:
                 if deferred:
                     egos = pa.table({"drive_id": ids * len(deferred), "ego_id": deferred})
                     store.insert(self._con, "deferred_ego", egos)
-                judged = {ego: n for ego, n in drives[0].pairs_by_ego.items() if ego not in set(deferred)}
-                cuttable = len(drives) == 1 and len(judged) > 1
+                pairs_by_ego = {ego: n for ego, n in drives[0].pairs_by_ego.items() if ego not in set(deferred)}
+                cuttable = len(drives) == 1 and len(pairs_by_ego) > 1
                 try:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
                     with store.uniform_memory_errors():
@@ -220,7 +220,7 @@ class JudgingSession:
                 except duckdb.OutOfMemoryException:
                     if not cuttable:
                         raise
-                    self._memory.halve_parts(sum(judged.values()))
+                    self._memory.halve_parts(sum(pairs_by_ego.values()))
                     return False
                 # the kept database contains every ego, so `deferred_ego` is not copied
                 self._append_to_kept_database(
@@ -266,9 +266,9 @@ class JudgingSession:
             for table in sorted(set(declarations.tables_of_lifetime("map")) - store.tables_without_rows(self._con)):
                 self._con.execute(f"DELETE FROM {table}")
             for id_, environment in sorted(environments.items()):
-                known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
+                is_loaded = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
                 for table, rows in environment.tables.items():
-                    if not (known and declarations.lifetimes()[table] == "run"):
+                    if not (is_loaded and declarations.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
             derive(self._con, self._tables, are_map_tables=True, always_needed_tables=self._also)
             self._maps = frozenset(environments)
@@ -289,7 +289,7 @@ class JudgingSession:
 
     def _tables_to_fill(self, *lifetimes: str) -> list[str]:
         """Return the tables of these lifetimes that get rows: those of a log, and the derived tables that the rules need."""
-        unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
+        unneeded = derived_tables() - {derivation.table for derivation in needed_derivations(self._tables, self._also)}
         return [table for table in declarations.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
     def _attach_kept_database(self, path: Path) -> None:
@@ -306,8 +306,8 @@ class JudgingSession:
             return
         for table in tables:
             whole = has_shared_rows and ("ego_id" not in declarations.column_comments()[table] or table == "_ego_clock")
-            known = f" EXCEPT FROM kept.{table}" if whole else ""
-            self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
+            except_kept = f" EXCEPT FROM kept.{table}" if whole else ""
+            self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{except_kept}")
 
     def _append_maps_to_kept(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
@@ -336,18 +336,18 @@ class JudgingSession:
 def _log_rows_with_map(drive: Drive) -> pa.Table:
     log, geo = drive.trace.tables["data_log"], drive.geo
     place = drive.environment.environment_id if drive.environment else None
-    found: dict[str, str | float | None] = {"environment_id": place}
+    columns: dict[str, str | float | None] = {"environment_id": place}
     if geo:
-        found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
-    return replace_columns(log, {name: [value] * log.num_rows for name, value in found.items()})
+        columns |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
+    return replace_columns(log, {name: [value] * log.num_rows for name, value in columns.items()})
 
 
 def _drive_ids(drives: Iterable[Drive]) -> list[str]:
-    return [each for drive in drives for each in drive.trace.tables["data_log"]["drive_id"].to_pylist()]
+    return [drive_id for drive in drives for drive_id in drive.trace.tables["data_log"]["drive_id"].to_pylist()]
 
 
 def _actor_ids(drives: Iterable[Drive]) -> set[str]:
-    held = set(declarations.tables_of_lifetime("drive", "part"))
-    tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
+    names = set(declarations.tables_of_lifetime("drive", "part"))
+    tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in names]
     columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_ID_COLUMNS]
-    return {each for column in columns for each in pc.unique(column).to_pylist() if each is not None}
+    return {actor_id for column in columns for actor_id in pc.unique(column).to_pylist() if actor_id is not None}

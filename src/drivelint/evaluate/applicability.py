@@ -45,10 +45,10 @@ def condition_sql_fragments(rule: Rule, alias: str, time_sql: str, check_engagem
 
 def parameters_of_conditions(rule: Rule) -> dict[str, object]:
     """Return parameter name -> value, for the parameters in the conditions' SQL."""
-    least, most = rule.applies.limit_min_mps, rule.applies.limit_max_mps
+    least, largest = rule.applies.limit_min_mps, rule.applies.limit_max_mps
     values: dict[str, object] = {
         "_limit_min": None if least is None else least - ROUNDING_MPS,
-        "_limit_max": None if most is None else most + ROUNDING_MPS,
+        "_limit_max": None if largest is None else largest + ROUNDING_MPS,
     }
     for name, words in rule.applies.restricted_conditions.items():
         values[f"_is_{name}"] = conditions.with_narrower_values(words)
@@ -58,13 +58,13 @@ def parameters_of_conditions(rule: Rule) -> dict[str, object]:
 
 def _sql_by_condition(rule: Rule, check_engagement: bool) -> dict[str, str]:
     """Return condition -> its SQL (true, false or NULL), with the automated driver's engagement first."""
-    found = {"engaged": ENGAGED_SQL} if check_engagement else {}
+    sql = {"engaged": ENGAGED_SQL} if check_engagement else {}
     for name in rule.applies.restricted_conditions:
-        found[name] = (
+        sql[name] = (
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "
             f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
         )
     limits = ((">= $_limit_min", rule.applies.limit_min_mps), ("<= $_limit_max", rule.applies.limit_max_mps))
     if rule.applies.has_speed_limit_condition:
-        found["limit"] = " AND ".join(f"e.limit_mps {bound}" for bound, mps in limits if mps is not None)
-    return found
+        sql["limit"] = " AND ".join(f"e.limit_mps {bound}" for bound, mps in limits if mps is not None)
+    return sql

@@ -107,15 +107,15 @@ class Evaluation:
 
     def _judge_on_two_connections(self, todo: deque[Binding]) -> None:
         """Judge the rules of the queue on two connections, because DuckDB uses only one core for few rows."""
-        with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as other:
+        with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as second:
             self.is_only_connection = False
-            helper = replace(self, con=other)
+            helper = replace(self, con=second)
             helped = pool.submit(helper.judge_from_queue, todo)
             try:
                 self._judge_queue_and_aggregate(todo)
                 helped.result()
                 for table in temp_tables.OUTCOME_TABLES:
-                    store.insert(self.con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
+                    store.insert(self.con, table, second.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
                 todo.clear()  # if an error occurred, the helper stops after its current rule
                 wait([helped])
@@ -153,13 +153,13 @@ class Evaluation:
                 binding = todo.popleft()
             except IndexError:
                 return
-            if (lost := self.limits.exceeded_limit(binding.rule.id)) is not None:
-                self._insert_error_verdicts(binding, lost, was_skipped=True)
+            if (excess := self.limits.exceeded_limit(binding.rule.id)) is not None:
+                self._insert_error_verdicts(binding, excess, was_skipped=True)
                 continue
             if self._has_no_occasion(binding):
                 continue
             aggregates = False
-            with self.limits.limit_statements(self.con, binding.rule.id, alone=self.is_only_connection) as held:
+            with self.limits.limit_statements(self.con, binding.rule.id, alone=self.is_only_connection) as limits:
                 try:
                     with store.uniform_memory_errors():
                         self.judge_rule(binding)
@@ -172,10 +172,10 @@ class Evaluation:
                     failure = error
                 else:
                     continue
-            self._pending = [other for other in self._pending if other is not binding]
+            self._pending = [waiting for waiting in self._pending if waiting is not binding]
             if aggregates:
                 todo.extendleft(self._discard_results_to_judge_separately(self._pending))
-            self._record_error(binding, failure, held.excess)
+            self._record_error(binding, failure, limits.excess)
 
     def prepare(self) -> None:
         """Create the temporary tables, decide which rules need not run, and group the default grids once for all rules."""

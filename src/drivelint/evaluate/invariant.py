@@ -70,16 +70,16 @@ def _grid_sql(rule: Rule, skips_subjects: bool, unsettled: bool, check_engagemen
 def _grid_of_all_steps_sql(rule: Rule) -> str:
     if "applies" not in rule.sections:
         return statement("judging/grid_by_default", grid="_pair_grid" if rule.per_object else "_step_grid")
-    own = rule.columns["applies"]
-    three = "applies" if "applies" in own else "true"
-    crowd = rule.per_object and "object_id" not in own
+    columns = rule.columns["applies"]
+    three = "applies" if "applies" in columns else "true"
+    crowd = rule.per_object and "object_id" not in columns
     return statement(
         "judging/grid_of_author",
         author=rule.sections["applies"],
-        author_object="object_id" if "object_id" in own else "NULL::VARCHAR",
-        label="episode::VARCHAR" if "episode" in own else "NULL::VARCHAR",
+        author_object="object_id" if "object_id" in columns else "NULL::VARCHAR",
+        label="episode::VARCHAR" if "episode" in columns else "NULL::VARCHAR",
         applies=three,
-        why=f"min(reason) FILTER (({three}) IS NULL)" if "reason" in own else "NULL::VARCHAR",
+        why=f"min(reason) FILTER (({three}) IS NULL)" if "reason" in columns else "NULL::VARCHAR",
         object="p.object_id" if crowd else "a.object_id",
         objects="JOIN pair p ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = p.t_ns" if crowd else "",
     )
@@ -98,15 +98,15 @@ def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, s
         same_key += f" AND g.object_id {'IS NOT DISTINCT FROM' if 'applies' in rule.sections else '='} v.object_id"
     if rule.per_profile:
         same_key += " AND p.profile = v.profile"
-    kept = ") SELECT * FROM _steps"
+    rest = ") SELECT * FROM _steps"
     if rule.exempt_after_s != 0:
         source = "SELECT * FROM _steps WHERE applies IS DISTINCT FROM false"
         numbered = statement("judging/steps_with_episode", source=source)
-        kept = statement("judging/aged", steps_with_episode=numbered)
+        rest = statement("judging/aged", steps_with_episode=numbered)
     grid = "_step_to_judge AS (SELECT * FROM _asked)"
     if steps != "asked":
         grid = _grid_sql(rule, skips_subjects, steps == "unsettled", check_engagement)
-    return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
+    return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=rest)
 
 
 def insert_unknowns_of_lost_objects_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:

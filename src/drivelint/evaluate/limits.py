@@ -130,7 +130,7 @@ class RuleLimits:
         seconds = self.allowed_cpu_s or 0.0
         work, before = ProcessorClock(thread), resident_bytes()
         patience = 0.0
-        most: int | None = None  # the memory of the process above which the rule gets no more time to react
+        most_bytes: int | None = None  # the memory of the process above which the rule gets no more time to react
         while not rule_run.end_event.wait(min(_RULE_LIMIT_CHECK_PERIOD_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
             excess = rule_run.excess
@@ -138,14 +138,14 @@ class RuleLimits:
                 memory = self.memory() if alone else None
                 if memory is None:
                     before = resident
-                most = None if memory is None else before + int(_MOST_MULTIPLE_OF_MEMORY_LIMIT * memory)
+                most_bytes = None if memory is None else before + int(_MOST_MULTIPLE_OF_MEMORY_LIMIT * memory)
                 if memory is not None and resident - before > memory:
                     excess, patience = "out_of_memory", now + min(_GRACE_AFTER_MEMORY_EXCESS_S, seconds)
                 elif now >= seconds:
                     excess, patience = "rule_timeout", now + seconds
                 else:
                     continue
-            elif most is not None and resident > most:
+            elif most_bytes is not None and resident > most_bytes:
                 patience = now  # also for a rule that was interrupted because of its time, and continues to grow
             with rule_run.lock:
                 if rule_run.end_event.is_set():

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 def references_sql(rule: Rule, columns: Sequence[str], skips_subjects: bool) -> str:
     """Return the SQL for `reference`: the author's reference points of the subjects to judge, numbered in the order of all columns."""
-    others = [c.replace('"', '""') for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
-    rest = [f'"{c}" NULLS LAST' for c in others]
-    who = ["object_id NULLS LAST"] if "object_id" in columns else []
+    columns_of_rule = [c.replace('"', '""') for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
+    rest = [f'"{c}" NULLS LAST' for c in columns_of_rule]
+    object_order = ["object_id NULLS LAST"] if "object_id" in columns else []
     return statement(
         "judging/reference",
         reference=rule.sections["reference"],
         todo=subject_join_sql(skips_subjects, "r"),
-        order=", ".join(["drive_id", "ego_id", "t_ns NULLS LAST", *who, *rest]),
+        order=", ".join(["drive_id", "ego_id", "t_ns NULLS LAST", *object_order, *rest]),
     )
 
 
@@ -69,9 +69,11 @@ def judged_steps_sql(rule: Rule, has_object_column: bool, check_engagement: bool
         joins = applicability.condition_sql_fragments(rule, "g", "g.t_ns", check_engagement)["condition_joins"]
     series = ", _point AS (SELECT *, object_id AS who, 1 AS n_same FROM _expected)"
     if rule.combine != "each":
-        whose = "'who': object_id, 'gain': gain, "
+        object_fields = "'who': object_id, 'gain': gain, "
         decides = (
-            step_by_rank_sql(2, 0, 1, "", whose) if rule.combine == "all" else step_by_rank_sql(0, 2, 1, "-", whose)
+            step_by_rank_sql(2, 0, 1, "", object_fields)
+            if rule.combine == "all"
+            else step_by_rank_sql(0, 2, 1, "-", object_fields)
         )
         series = statement("judging/combined_objects", deciding_object=decides)
     return rule_statement(

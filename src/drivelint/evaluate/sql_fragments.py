@@ -52,8 +52,8 @@ class Binding:
             **applicability.parameters_of_conditions(rule),
         }
         for field, name in _PARAMETER_BY_FIELD.items():
-            given = getattr(rule, field)
-            seconds = params[given] if isinstance(given, str) else given
+            duration = getattr(rule, field)
+            seconds = params[duration] if isinstance(duration, str) else duration
             self._values[name] = None if seconds is None else _nanoseconds(seconds, rule.id, field)
 
     def values(self, names: Iterable[str]) -> dict[str, object]:
@@ -89,7 +89,7 @@ def condition_ctes_sql(rule: Rule) -> str:
     otherwise the result is unknown.
     """
     has = rule.has_column
-    measured = rule.sense != "holds"
+    is_measured = rule.sense != "holds"
     # for >= and <=, values are rounded, so that 1.5 m satisfies "at least 1.5 m" in spite of rounding errors
     exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"
     number = f"CASE WHEN isnan({{0}}::DOUBLE){{1}} THEN NULL ELSE {exact} END AS {{0}}"
@@ -101,17 +101,17 @@ def condition_ctes_sql(rule: Rule) -> str:
         f"{'bounded_text(profile)' if has('profile') else 'NULL::VARCHAR'} AS profile",
         f"{'applies' if has('applies') else 'true'}::BOOLEAN AS applies",
         *(
-            number.format(column, keeps_all.get(column, "").format(column)) if measured else f"NULL::DOUBLE AS {column}"
+            number.format(column, keeps_all.get(column, "").format(column)) if is_measured else f"NULL::DOUBLE AS {column}"
             for column in ("observed", "required")
         ),
-        *(["holds::BOOLEAN AS holds"] if not measured else []),
+        *(["holds::BOOLEAN AS holds"] if not is_measured else []),
         *(["coalesce(at_least::BOOLEAN, true) AS at_least"] if has("at_least") else []),
         *(["coalesce(error::DOUBLE, 0.0) AS error"] if has("error") else []),
         f"{'bounded_text(reason_code)' if has('reason_code') else 'NULL::VARCHAR'} AS code",
         f"{'bounded_text(reason)' if has('reason') else 'NULL::VARCHAR'} AS reason",
     ]  # fmt: skip
     holds, gain, code = "holds", "0.0::DOUBLE", "code"
-    if measured:
+    if is_measured:
         holds = compare = f"(observed {rule.sense} required)"
         difference = "observed - required" if rule.sense[0] == ">" else "required - observed"
         gain = f"CASE WHEN isnan({difference}) THEN 0.0::DOUBLE ELSE {difference} END"

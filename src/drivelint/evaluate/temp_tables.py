@@ -58,12 +58,22 @@ def create_table_of_doubted_steps(con: duckdb.DuckDBPyConnection, bindings: Sequ
 
 
 def _rule_rows(bindings: Sequence[Binding]) -> pa.Table:
-    told = ("kind", "subtype", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
+    fields = (
+        "kind",
+        "subtype",
+        "severity",
+        "sense",
+        "unit",
+        "observes",
+        "near_margin",
+        "without_time",
+        "without_anchor",
+    )
     rows = []
     for binding in bindings:
         rule, sources = binding.rule, tables_with_sources(binding.rule.reads)
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
-        row |= {name: getattr(rule, name) for name in told}
+        row |= {name: getattr(rule, name) for name in fields}
         row |= {"of_others": ROAD_USERS_SIGNAL in rule.needed_signals, "of_hidden": "hidden" in sources}
         row |= {
             "of_lanes": bool({"registration", "way"} & set(rule.requires)),
@@ -99,10 +109,12 @@ def _rows_of_allowed_condition_values(bindings: Sequence[Binding]) -> pa.Table:
     columns = ("rule_no", "code", "condition", "word")
     rows = []
     for b in bindings:
-        asked = [("outside_conditions", *each) for each in b.rule.applies.restricted_conditions.items()]
+        restrictions = [
+            ("outside_conditions", *restriction) for restriction in b.rule.applies.restricted_conditions.items()
+        ]
         if b.rule.law:
-            asked.append(("other_nation", "nation", b.rule.law))
-        for code, condition, words in asked:
-            known = (*conditions.with_narrower_values(words), *conditions.broader_values(words))
-            rows += [(b.no, code, condition, word) for word in known]
+            restrictions.append(("other_nation", "nation", b.rule.law))
+        for code, condition, words in restrictions:
+            spellings = (*conditions.with_narrower_values(words), *conditions.broader_values(words))
+            rows += [(b.no, code, condition, word) for word in spellings]
     return pa.table({name: [row[at] for row in rows] for at, name in enumerate(columns)}, schema=_ALLOWED_WORD_SCHEMA)

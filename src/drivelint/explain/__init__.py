@@ -80,7 +80,7 @@ def explain(request: ExplainRequest) -> Explanation:
     run_options = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
     case = _context_of_verdict(run_options, target, result.rules, request.memory)
     row = target.verdict_row
-    of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
+    of_drive = next(drive for drive in result.drives.to_pylist() if drive["drive_id"] == row["drive_id"])
     drive, source = open_judged_drive_and_source_text(
         request.folder,
         run_options,
@@ -92,9 +92,9 @@ def explain(request: ExplainRequest) -> Explanation:
     )
     with ExitStack() as exit_stack:
         sandbox = exit_stack.enter_context(case.sandbox([drive]))
-        judged = sandbox.judge(case.params)
-        now = case.verdicts_on(judged, [sandbox.drive_id])[0]
-        series = evidence.judged_steps(case.rule, target, judged)
+        judgement = sandbox.judge(case.params)
+        now = case.verdicts_on(judgement, [sandbox.drive_id])[0]
+        series = evidence.judged_steps(case.rule, target, judgement)
         decides = _deciding_time_ns(target, series, now)
         parts = evidence.required_value_parts(case.rule, target, sandbox, case.params, decides)
         lacking = missing_signal(row["reason_code"]) if lacks_signal(row) else None
@@ -171,11 +171,11 @@ def _context_of_verdict(run_options: RunRequest, target: Target, rules: pa.Table
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
     (row,) = rules.filter(pc.equal(rules["rule_id"], rule_id)).to_pylist()
     rule = msgspec.structs.replace(rule, is_named=row["is_named"])
-    mine = [
+    settings = [
         setting for setting in run_options.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id
     ]
-    set_ = catalogue.parse_params([rule], mine).get(rule_id, {})
-    params = {name: set_.get(name, param.default) for name, param in rule.params.items()}
+    values = catalogue.parse_params([rule], settings).get(rule_id, {})
+    params = {name: values.get(name, param.default) for name, param in rule.params.items()}
     return VerdictContext(
         rule, target, params, profile_table(load_profiles(run_options.rules_dirs), run_options.profiles), memory
     )
@@ -215,6 +215,6 @@ def _notes_on_changes_since_run(context: VerdictContext, verdict: str) -> list[s
 
 def _notes_on_removed_track_ends(drive: Row, reason_code: str | None) -> list[str]:
     """Return notes on tracks whose ends drivelint removed, if the verdict is unknown because a track ends."""
-    removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
-    told = "drivelint removed the ends of tracks; a longer recording would not change this"
-    return [f"{told}: {message}." for message in removed if (reason_code or "").startswith("lost_")]
+    messages = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
+    introduction = "drivelint removed the ends of tracks; a longer recording would not change this"
+    return [f"{introduction}: {message}." for message in messages if (reason_code or "").startswith("lost_")]

@@ -84,27 +84,30 @@ def _varied_profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterat
     if not context.rule.per_profile or profile is None:
         return
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
-        for column, (unit, what) in _UNIT_AND_TEXT_BY_COLUMN.items():
+        for column, (unit, text) in _UNIT_AND_TEXT_BY_COLUMN.items():
             now = row[column]
             if now is not None:  # NULL: the profile `observed`
                 maximum = math.pi / 2 if unit == "rad" else math.inf
                 # one more value is one more row, which costs almost nothing
-                yield _VariedNumber(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
+                yield _VariedNumber(f"{profile}.{column}", text, unit, float(now), maximum, column, halvings=4)
 
 
 def _verdicts_with_parameters(
     context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
-    judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in tried_values])
-    return ["error" if each is None else context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
+    judgements = sandbox.judge_each([{**context.params, number.name: value} for number, value in tried_values])
+    return [
+        "error" if judgement is None else context.verdicts_on(judgement, [sandbox.drive_id])[0]
+        for judgement in judgements
+    ]
 
 
 def _verdicts_with_profiles(
     context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
     columns_and_values = [(number.column, value) for number, value in tried_values if number.column is not None]
-    judged = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], columns_and_values)
-    return [context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
+    judgements = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], columns_and_values)
+    return [context.verdicts_on(judgement, [sandbox.drive_id])[0] for judgement in judgements]
 
 
 def _search_changes(
@@ -117,9 +120,9 @@ def _search_changes(
     ]
     while running:
         requests: list[tuple[_VariedNumber, Search, Sequence[float]]] = []
-        for number, search, told in running:
+        for number, search, answer in running:
             try:
-                requests.append((number, search, next(search) if told is None else search.send(told)))
+                requests.append((number, search, next(search) if answer is None else search.send(answer)))
             except StopIteration as end:
                 changes.append(end.value)
         flat = [(number, value) for number, _, values in requests for value in values]
@@ -134,7 +137,7 @@ def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
     least = 0.0 if number.now >= 0 else -math.inf  # keep a number that is not negative at 0 or more
     sides = [_values_to_try(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
-    none = NearestChange(number.name, number.description, number.unit, number.now, None, None, False, low, high)
+    no_change = NearestChange(number.name, number.description, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
     verdicts: dict[float, str] = {}
     for n in range(len(RELATIVE_SEARCH_DISTANCES)):
@@ -149,10 +152,10 @@ def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
                 shut.add(side)  # values beyond are not valid either
             elif not _is_no_useful_change(becomes, verdict):
                 value, becomes, beyond = yield from _nearest_changing_value(number, values, n, verdict, verdicts)
-                edges.append(none._replace(nearest_value=value, becomes=becomes, beyond=beyond))
+                edges.append(no_change._replace(nearest_value=value, becomes=becomes, beyond=beyond))
         if edges:
             return min(edges, key=lambda edge: (abs((edge.nearest_value or 0.0) - number.now), edge.nearest_value))
-    return none
+    return no_change
 
 
 def _values_to_try(number: _VariedNumber, scale: float, least: float) -> list[float]:
@@ -209,10 +212,10 @@ def _values_with_few_digits_beyond(number: _VariedNumber, far: float) -> list[fl
     """Return numbers with few digits at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))
-    found = []
+    values = []
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
         if abs(value - far) <= max(min(0.05 * abs(far - number.now), _RELATIVE_SEARCH_TOLERANCE * abs(far)), 1e-9):
-            found.append(value)
-    return found
+            values.append(value)
+    return values

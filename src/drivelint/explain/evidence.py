@@ -71,19 +71,21 @@ def required_value_parts(
     rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
 ) -> list[RequiredValuePart]:
     """Return the summands of the requirement at one time; [] if the rule defines none, or their sum is not the requirement."""
-    row, found = target.verdict_row, read_parts(rule)
-    if found is None or row["required"] is None or t_ns is None:
+    row, parts = target.verdict_row, read_parts(rule)
+    if parts is None or row["required"] is None or t_ns is None:
         return []
     keys = {"ego_id": row["ego_id"], "t_ns": t_ns, "object_id": row["object_id"], "profile": row["profile"]}
-    keys = {name: keys[name] for name in found.key_columns if keys.get(name) is not None}
-    bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
+    keys = {name: keys[name] for name in parts.key_columns if keys.get(name) is not None}
+    bound = {name: params[name] for name in parts.parameters} | {f"_{name}": value for name, value in keys.items()}
     where = " AND ".join(f"{name} = $_{name}" for name in keys)
-    for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
-        parts = [
-            RequiredValuePart(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None
+    for values in sandbox.query(f"SELECT * FROM ({parts.sql}) WHERE {where} ORDER BY ALL", bound):
+        summands = [
+            RequiredValuePart(name, words, values[name])
+            for name, words in parts.parts.items()
+            if values[name] is not None
         ]
-        if parts and math.isclose(sum(part.value for part in parts), row["required"], rel_tol=1e-6, abs_tol=1e-6):
-            return parts
+        if summands and math.isclose(sum(part.value for part in summands), row["required"], rel_tol=1e-6, abs_tol=1e-6):
+            return summands
     return []
 
 
@@ -97,14 +99,14 @@ def rows_read_by_rule(
     """
     if missing_signal is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
-        told = sandbox.query(sql, [target.verdict_row["ego_id"], missing_signal])
-        return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in told], 0)]
-    found = []
+        signals = sandbox.query(sql, [target.verdict_row["ego_id"], missing_signal])
+        return [TableRows("capability", [{**row, "reason": reason_text.sentence(row["reason"])} for row in signals], 0)]
+    rows_by_table = []
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
         columns = list(declarations.column_comments().get(table, {}))
         if "drive_id" in columns or table == "profile":
-            found.append(_rows_of_table(target, sandbox, table, columns, t_ns))
-    return found
+            rows_by_table.append(_rows_of_table(target, sandbox, table, columns, t_ns))
+    return rows_by_table
 
 
 def _rows_of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
@@ -114,19 +116,21 @@ def _rows_of_table(target: Target, sandbox: Sandbox, table: str, columns: list[s
         terms["ego_id = ?"] = [row["ego_id"]]
     if "profile" in columns and row["profile"] is not None:
         terms["profile IS NOT DISTINCT FROM ?"] = [row["profile"]]
-    who = [column for column in _OBJECT_COLUMNS if column in columns and row["object_id"] is not None]
-    if who:
-        terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
+    object_columns = [column for column in _OBJECT_COLUMNS if column in columns and row["object_id"] is not None]
+    if object_columns:
+        terms[f"({' OR '.join(f'{column} = ?' for column in object_columns)})"] = [row["object_id"]] * len(
+            object_columns
+        )
     at_time = {} if t_ns is None else _where_terms_of_time(columns, t_ns)
-    found = _select_rows(sandbox, table, columns, terms | at_time, row)
-    if not found.rows and at_time and who and table in TABLES_WITH_ROW_PER_TRACK_STEP:
+    shown_rows = _select_rows(sandbox, table, columns, terms | at_time, row)
+    if not shown_rows.rows and at_time and object_columns and table in TABLES_WITH_ROW_PER_TRACK_STEP:
         track = sandbox.query(f"SELECT t_ns FROM {table}{_where_clause(terms)} ORDER BY t_ns", _values_of_terms(terms))
-        times = [each["t_ns"] for each in track]
+        times = [state["t_ns"] for state in track]
         nearest = max((t for t in times if t < t_ns), default=min(times, default=None)) if t_ns is not None else None
         if nearest is not None:
-            found = _select_rows(sandbox, table, columns, terms | _where_terms_of_time(columns, nearest), row)
-            return found._replace(at_ns=nearest)
-    return found
+            shown_rows = _select_rows(sandbox, table, columns, terms | _where_terms_of_time(columns, nearest), row)
+            return shown_rows._replace(at_ns=nearest)
+    return shown_rows
 
 
 def _select_rows(
@@ -135,15 +139,15 @@ def _select_rows(
     """Return the rows of a table that fulfil these terms; table and columns are from our schemas, never from a user."""
     where, values = _where_clause(terms), _values_of_terms(terms)
     # the rows of the ego and the object come first
-    ours = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
-    first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
-    everything = sandbox.query(
-        f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_SHOWN_ROWS_PER_TABLE}", [*values, *ours]
+    parties = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
+    first = "actor_id NOT IN (?, ?), COLUMNS(*)" if parties else "ALL"
+    rows = sandbox.query(
+        f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_SHOWN_ROWS_PER_TABLE}", [*values, *parties]
     )
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
     # leave out the keys, which are the same in all rows
-    plain = [{column: each[column] for column in each if column not in {"drive_id", "ego_id"}} for each in everything]
-    return TableRows(table, plain, max(0, n - len(everything)))
+    plain = [{column: row[column] for column in row if column not in {"drive_id", "ego_id"}} for row in rows]
+    return TableRows(table, plain, max(0, n - len(rows)))
 
 
 def _where_clause(terms: Mapping[str, list[Any]]) -> str:

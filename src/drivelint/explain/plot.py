@@ -33,10 +33,10 @@ def plot_lines(steps: Sequence[Step], width: int, height: int, drive_start_ns: i
     if len(steps) < 2:
         return []
     columns = [column for column in _columns(steps, width) for _ in range(max(1, width // len(steps)))]
-    measured = any(column.margin is not None for column in columns)
+    is_measured = any(column.margin is not None for column in columns)
     label_width = max(9, len(unit) + 8)
     strip = "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.has_step else " " for c in columns)
-    body = _bar_lines(columns, height, label_width, unit) if measured else [" " * label_width + " " + strip]
+    body = _bar_lines(columns, height, label_width, unit) if is_measured else [" " * label_width + " " + strip]
     first, last = (seconds(step.t_ns, drive_start_ns) for step in (steps[0], steps[-1]))
     axis = " " * label_width + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
     return [*body, axis]
@@ -60,8 +60,8 @@ def _columns(steps: Sequence[Step], width: int) -> list[_Column]:
 
 
 def _bar_lines(columns: Sequence[_Column], height: int, label_width: int, unit: str) -> list[str]:
-    known = [c.margin for c in columns if c.margin is not None]
-    top, bottom = max(0.0, *known), min(0.0, *known)
+    margins = [c.margin for c in columns if c.margin is not None]
+    top, bottom = max(0.0, *margins), min(0.0, *margins)
     size = (top - bottom) / height or 1.0
     above, below = math.ceil(top / size - 1e-9), math.ceil(-bottom / size - 1e-9)
     heads = {above: f"{top:+.3g} {unit}", -below: f"{bottom:+.3g} {unit}", 0: "limit"}

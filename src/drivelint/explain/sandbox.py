@@ -100,10 +100,10 @@ class Sandbox:
         Several settings are judged in one evaluation, because starting and ending it takes as long as judging four rules.
         """
         valid = [no for no, params in enumerate(params_of_runs) if self._are_params_valid(params)]
-        found: dict[str, Judgement] = {}
+        judgements: dict[str, Judgement] = {}
         for some in _batches(valid, self._at_once):
-            found |= self._judge_settings_with_retry({f"{self._rule.id}~{no}": params_of_runs[no] for no in some})
-        return [found.get(f"{self._rule.id}~{no}") for no in range(len(params_of_runs))]
+            judgements |= self._judge_settings_with_retry({f"{self._rule.id}~{no}": params_of_runs[no] for no in some})
+        return [judgements.get(f"{self._rule.id}~{no}") for no in range(len(params_of_runs))]
 
     def _judge_settings_with_retry(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
         return self._memory.run_job(lambda _con: self._judge_settings_once(params_by_name))
@@ -120,9 +120,9 @@ class Sandbox:
     ) -> list[Judgement]:
         """Judge by the rule with a changed profile for each (column, value): the profile with that value in that column."""
         return [
-            judged
+            judgement
             for some in _batches(columns_and_values, self._at_once)
-            for judged in self._judge_profiles_at_once(params, profile, some)
+            for judgement in self._judge_profiles_at_once(params, profile, some)
         ]
 
     def _judge_profiles_at_once(
@@ -136,10 +136,10 @@ class Sandbox:
             )
         try:
             self._derive_again_tables_that_read_profiles()
-            judged = self.judge(params)
+            judgement = self.judge(params)
         finally:
             self.con.execute("DELETE FROM profile WHERE list_contains(?, profile)", [names])
-        verdicts, steps = (group_rows(rows, lambda row: row["profile"]) for rows in judged)
+        verdicts, steps = (group_rows(rows, lambda row: row["profile"]) for rows in judgement)
         return [
             Judgement(*([{**row, "profile": profile} for row in rows.get(name, [])] for rows in (verdicts, steps)))
             for name in names

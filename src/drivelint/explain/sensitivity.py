@@ -29,8 +29,8 @@ def sensitivity_from_copies_of_check(finding: Row | None, errors: MeasurementErr
     """Return the sensitivity from the copies that `check` judged; None if it judged none, or if other errors are requested."""
     if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
         return None
-    told = asdict(errors) | {"samples": finding["n_copies"], "counts": {"fail": finding["n_stays"]}}
-    return Sensitivity(**told, from_ns=None, to_ns=None, certainty=certainty(finding))
+    values = asdict(errors) | {"samples": finding["n_copies"], "counts": {"fail": finding["n_stays"]}}
+    return Sensitivity(**values, from_ns=None, to_ns=None, certainty=certainty(finding))
 
 
 def groups_of_perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:
@@ -45,10 +45,10 @@ def verdict_sensitivity(
     context: VerdictContext, drive: Drive, errors: MeasurementErrors, span_ns: tuple[int, int] | None
 ) -> Sensitivity:
     """Return how often each verdict occurs on copies of `drive`. `span_ns`: the interval of `drive` if it is only a part of the log."""
-    found: list[str] = []
+    verdicts: list[str] = []
     for ids, batch in groups_of_perturbed_copies(drive, errors):
         with context.sandbox([batch]) as sandbox:
-            found += context.verdicts_on(sandbox.judge(context.params), ids)
-    counts: dict[str, int] = {verdict: found.count(verdict) for verdict in _VERDICTS if verdict in found}
+            verdicts += context.verdicts_on(sandbox.judge(context.params), ids)
+    counts: dict[str, int] = {verdict: verdicts.count(verdict) for verdict in _VERDICTS if verdict in verdicts}
     start, end = span_ns or (None, None)
     return Sensitivity(**asdict(errors), counts=counts, from_ns=start, to_ns=end)

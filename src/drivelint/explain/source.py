@@ -42,12 +42,14 @@ def open_judged_drive_and_source_text(
     `trace`, `map_`: the paths of log and map if they were moved. `map_sha256`: the hash of the map's content; None: not compared.
     Errors: `UsageError` if there is neither a kept database nor a log at its path, or if the log or the map has another content.
     """
-    kept = folder / DATABASE_FILE
-    if trace is None and kept.is_file():
+    database = folder / DATABASE_FILE
+    if trace is None and database.is_file():
         try:
-            return _drive_from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
+            return _drive_from_database(database, drive_id, ego_id), f"the kept database {database.name}"
         except duckdb.Error as error:
-            raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
+            raise UsageError(
+                f"{database}: {str(error).splitlines()[0]}: check the drives again with --keep-db"
+            ) from error
     return _drive_and_source_text_from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
 
 
@@ -82,14 +84,14 @@ def _read_drive(run_options: RunRequest, path: Path, map_: Path | None, drive_id
     run_options = replace(
         run_options, ego=ego_id, map=map_path, map_dir=None if map_path is not None else run_options.map_dir
     )
-    read = read_trace(path, run_options.ingest_options())
-    if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
+    log = read_trace(path, run_options.ingest_options())
+    if log.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
-            f"{path} is the log {read.drive_id}, but {drive_id} was judged: give the right log with --trace"
+            f"{path} is the log {log.drive_id}, but {drive_id} was judged: give the right log with --trace"
         )
-    if read.drive_id != drive_id:  # the same content under another name
-        read = with_drive_id(read, drive_id)
-    return drive_with_map(read, MapLibrary(run_options))
+    if log.drive_id != drive_id:  # the same content under another name
+        log = with_drive_id(log, drive_id)
+    return drive_with_map(log, MapLibrary(run_options))
 
 
 def with_ego(drive: Drive, ego_id: str) -> Drive:
@@ -109,8 +111,8 @@ def _drive_from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
         environment = None
         if place is not None:
             # nothing is derived from map_quality
-            known = [name for name in declarations.column_comments("map") if name != "map_quality"]
-            road = {name: _rows_with_key(con, name, "environment_id", place) for name in known}
+            names = [name for name in declarations.column_comments("map") if name != "map_quality"]
+            road = {name: _rows_with_key(con, name, "environment_id", place) for name in names}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
     return with_ego(Drive(Trace(drive_id, file, tables, None, None, []), environment), ego_id)

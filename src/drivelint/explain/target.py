@@ -64,8 +64,8 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
     findings = result.findings.to_pylist()
     verdicts = result.verdicts.to_pylist()
     ids = sorted({row["finding_id"] for row in findings})
-    if meant := [i for i in ids if i.startswith(name)]:
-        exact = name if name in meant else _only_match(name, meant, "findings")
+    if matches := [i for i in ids if i.startswith(name)]:
+        exact = name if name in matches else _only_match(name, matches, "findings")
         finding = next(row for row in findings if row["finding_id"] == exact)
         row = min(_verdicts_of_finding(finding, verdicts), key=_worst_first_key)
         return Target(row, finding, _other_verdicts(row, verdicts), finding)
@@ -106,11 +106,11 @@ def _matching_verdicts(rows: list[Row], verdict_filter: VerdictFilter, starts: d
     for key in ("ego_id", "profile", "object_id", "verdict"):
         value = getattr(verdict_filter, key)
         if value is not None:
-            known = sorted({row[key] for row in rows if row[key] is not None})
+            values = sorted({row[key] for row in rows if row[key] is not None})
             rows = [row for row in rows if row[key] == value]
             if not rows:
                 raise UsageError(
-                    f"no verdict for {key.replace('_id', '')} {value!r}; there are {', '.join(known) or 'none'}"
+                    f"no verdict for {key.replace('_id', '')} {value!r}; there are {', '.join(values) or 'none'}"
                 )
     if verdict_filter.at_s is None:
         return rows
@@ -154,16 +154,18 @@ def _worst_first_key(row: Row) -> tuple[Any, ...]:
 def _other_verdicts(row: Row, verdicts: Iterable[Row]) -> list[Row]:
     """Return the other verdicts of the rule in the drive, worst first."""
     keys = ("ego_id", "profile", "object_id", "t_start_ns", "verdict")
-    mine = [v for v in verdicts if v["drive_id"] == row["drive_id"] and v["rule_id"] == row["rule_id"] and v is not row]
-    return [{key: v[key] for key in keys} for v in sorted(mine, key=_worst_first_key)]
+    others_of_rule = [
+        v for v in verdicts if v["drive_id"] == row["drive_id"] and v["rule_id"] == row["rule_id"] and v is not row
+    ]
+    return [{key: v[key] for key in keys} for v in sorted(others_of_rule, key=_worst_first_key)]
 
 
 def _rule_of_name(name: str, rules: Sequence[str], n_findings: int) -> str:
     if name in rules:
         return name
-    meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
-    if meant:
-        return _only_match(name, meant, "rules")
+    matches = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
+    if matches:
+        return _only_match(name, matches, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
     hint = (
         f"it has {plural(n_findings, 'finding')} and {plural(len(rules), 'rule')}, such as {rules[0]}" if rules else ""
@@ -186,6 +188,6 @@ def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
 
 def _only_match(name: str, matches: Sequence[str], kinds: str) -> str:
     if len(matches) > 1:
-        shown = ", ".join(matches[:5]) + (", ..." if len(matches) > 5 else "")
-        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: give more characters of the name")
+        listed = ", ".join(matches[:5]) + (", ..." if len(matches) > 5 else "")
+        raise UsageError(f"{name!r} is the beginning of several {kinds}: {listed}: give more characters of the name")
     return matches[0]

@@ -107,23 +107,23 @@ def render(explanation: Explanation, width: int) -> Group:
 
 def _title_and_verdict(explanation: Explanation, width: int) -> list[RenderableType]:
     row, rule = explanation.verdict, explanation.rule
-    who = [f"drive {row['drive_id']}", ego_name(row["ego_id"])]
-    who += [f"object {row['object_id']}"] if row["object_id"] is not None else []
-    who += [f"profile {row['profile']}"] if row["profile"] is not None else []
+    facts = [f"drive {row['drive_id']}", ego_name(row["ego_id"])]
+    facts += [f"object {row['object_id']}"] if row["object_id"] is not None else []
+    facts += [f"profile {row['profile']}"] if row["profile"] is not None else []
     if row["t_start_ns"] is not None:
         start, end = (seconds(row[key], explanation.drive["t_start_ns"]) for key in ("t_start_ns", "t_end_ns"))
-        who.append(f"at {start}" if start == end else f"{start} to {end}")
+        facts.append(f"at {start}" if start == end else f"{start} to {end}")
         broken = [step.t_ns for step in explanation.series if step.holds is False and step.t_ns >= row["t_start_ns"]]
         if broken and start != end:
-            who.append(f"first broken at {seconds(broken[0], explanation.drive['t_start_ns'])}")
+            facts.append(f"first broken at {seconds(broken[0], explanation.drive['t_start_ns'])}")
     if "finding_id" in row:
-        who.append(f"finding {row['finding_id']}")
+        facts.append(f"finding {row['finding_id']}")
     word = row["verdict"].replace("_", " ").upper()
     title = breach_title(rule) if row["verdict"] == "fail" else rule["title"]
     return [
         Text(f"{rule['rule_id']}: {one_line(title)}", "bold"),
         Text.assemble((word, _STYLE_BY_VERDICT.get(row["verdict"], "bold")), f": {_meaning_of_verdict(row)}"),
-        *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
+        *(Text(line) for line in textwrap.wrap(", ".join(facts), width)),
     ]
 
 
@@ -141,7 +141,7 @@ def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, lis
         __file__,
         "explanation.txt.j2",
         # a line break in a value must not begin a new sentence
-        finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
+        finalize=lambda value: value.replace("\n", "\v") if isinstance(value, str) else value,
         cells=lambda row, table: [
             _cut_line(line, width - _TABLE_ROW_INDENT) for line in _lines_on_row(explanation, table, row)
         ],
@@ -187,9 +187,9 @@ def _folded_sql(line: str, note: str, width: int) -> list[str]:
     is_comment = line.lstrip().startswith("--")
     if len(line + note) <= width or ("--" in line and not is_comment):
         return [line + note]
-    kept = line if is_comment else re.sub(r"'[^']*'", lambda text: text[0].replace(" ", "\0"), line)
+    unbroken = line if is_comment else re.sub(r"'[^']*'", lambda text: text[0].replace(" ", "\0"), line)
     lines = textwrap.wrap(
-        kept,
+        unbroken,
         width,
         subsequent_indent=indent + ("-- " if is_comment else "    "),
         break_long_words=False,
@@ -206,8 +206,8 @@ def _note_on_line(line: str, columns_by_value: Mapping[str, Collection[str]]) ->
         word: sorted(column for column in columns if re.search(rf"\b{column}\b", code))
         for word, columns in columns_by_value.items()
     }
-    said = "; ".join(f"{word} here: {', '.join(columns)}" for word, columns in notes.items() if columns)
-    return f"  -- {said}" if said else ""
+    notes_text = "; ".join(f"{word} here: {', '.join(columns)}" for word, columns in notes.items() if columns)
+    return f"  -- {notes_text}" if notes_text else ""
 
 
 def _columns_with_value(explanation: Explanation, lacking: bool | None) -> dict[str, list[str]]:
@@ -218,7 +218,7 @@ def _columns_with_value(explanation: Explanation, lacking: bool | None) -> dict[
     if explanation.verdict["verdict"] != "unknown" or lacks_signal(explanation.verdict):
         return {}
     sql = "\n".join(explanation.sql.values())
-    found: dict[str, list[str]] = {}
+    columns_by_table: dict[str, list[str]] = {}
     for table, rows, *_ in explanation.rows:
         comments = declarations.column_comments().get(table, {})
         empty = dict.fromkeys(
@@ -227,10 +227,10 @@ def _columns_with_value(explanation: Explanation, lacking: bool | None) -> dict[
             for column, value in row.items()
             if value is lacking and (lacking is None or _TELLS_WHETHER_KNOWN.search(column))
         )
-        named = [c for c in empty if re.search(rf"\b{c}\b", sql) and not _NULL_MEANS_NONE.search(comments.get(c, ""))]
-        if named and table != "profile":  # the numbers of a profile are chosen, not recorded
-            found[table] = named
-    return found
+        columns = [c for c in empty if re.search(rf"\b{c}\b", sql) and not _NULL_MEANS_NONE.search(comments.get(c, ""))]
+        if columns and table != "profile":  # the numbers of a profile are chosen, not recorded
+            columns_by_table[table] = columns
+    return columns_by_table
 
 
 def _null_sentences(explanation: Explanation) -> list[str]:
@@ -249,16 +249,18 @@ def _lines_on_row(explanation: Explanation, table: str, row: Row) -> list[str]:
     condition = (
         None if "finding_id" in explanation.verdict else unknown_condition_column(explanation.verdict["reason_code"])
     )
-    asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
+    condition_column = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
     sql = "\n".join(explanation.sql.values())
-    named = [
-        column for column in row if column == asked or table == "capability" or re.search(rf"\b{column}\b", sql)
+    columns = [
+        column
+        for column in row
+        if column == condition_column or table == "capability" or re.search(rf"\b{column}\b", sql)
     ] or list(row)
-    wide, comments = max(map(len, named)), declarations.column_comments().get(table, {})
+    wide, comments = max(map(len, columns)), declarations.column_comments().get(table, {})
     start_ns = explanation.drive["t_start_ns"] or 0
     return [
         f"{column:<{wide}}  {_cell_text(column, row[column], start_ns):<12}  {_column_comment(comments.get(column, ''), row[column])}"
-        for column in named
+        for column in columns
     ]
 
 
@@ -292,8 +294,8 @@ def _plot_and_legend_lines(explanation: Explanation, width: int) -> list[str]:
     if not lines:
         return ["It was judged at one moment only."] if len(explanation.series) == 1 else []
     key = "Above the limit line: kept; below: broken; the height is the margin. ?: not known."
-    measured = any(step.margin is not None for step in explanation.series)
-    return [*lines, key if measured else "█ broken, · kept, ? not known."]
+    is_measured = any(step.margin is not None for step in explanation.series)
+    return [*lines, key if is_measured else "█ broken, · kept, ? not known."]
 
 
 def _wrapped_lines(lines: list[str], width: int) -> list[str]:

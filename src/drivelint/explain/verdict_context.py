@@ -50,14 +50,15 @@ class VerdictContext:
 
     def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in the same order."""
-        wanted, about = self.target.verdict_row, ["ego_id", "profile"]
+        verdict_row, about = self.target.verdict_row, ["ego_id", "profile"]
         if (
             self.target.judged_span_ns is not None and self.rule.combine == "each"
         ):  # else it is just the deciding object
             about.append("object_id")
         verdicts, steps = (
             group_rows(
-                (row for row in rows if all(row[name] == wanted[name] for name in about)), lambda row: row["drive_id"]
+                (row for row in rows if all(row[name] == verdict_row[name] for name in about)),
+                lambda row: row["drive_id"],
             )
             for rows in (judgement.verdicts, judgement.steps)
         )
@@ -92,9 +93,9 @@ def shortest_part_with_same_verdict(
         small = crop(drive, *part)
         with ExitStack() as tried:
             of_part = tried.enter_context(context.sandbox([small]))
-            judged = of_part.judge(context.params)
-            if context.verdicts_on(judged, [of_part.drive_id]) == [verdict] and _has_same_margin(
-                context, evidence.judged_steps(context.rule, context.target, judged)
+            judgement = of_part.judge(context.params)
+            if context.verdicts_on(judgement, [of_part.drive_id]) == [verdict] and _has_same_margin(
+                context, evidence.judged_steps(context.rule, context.target, judgement)
             ):
                 exit_stack.push(tried.pop_all())
                 return small, part, of_part

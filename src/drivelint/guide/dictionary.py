@@ -69,18 +69,18 @@ _LIFETIME_WORDS: Final = {
 
 def page() -> str:
     """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file that `_HEADING_BY_SCHEMA_FILE` lacks."""
-    read = sources_of_derived_tables()
+    sources_by_table = sources_of_derived_tables()
     filters: dict[str, Any] = {
         "about": _derivation_comment,
         "columns": _column_table,
         "escaped": escape_markdown,
-        "facts": lambda name: " ".join(_table_facts(name, read, _markdown_links, "`")),
+        "facts": lambda name: " ".join(_table_facts(name, sources_by_table, _markdown_links, "`")),
         "links": _markdown_links,
     }
     return text_template(__file__, "dictionary.md.j2", **filters).render(
         says=_INTRODUCTION,
-        levels=derivation_levels(read),
-        read=read,
+        levels=derivation_levels(sources_by_table),
+        read=sources_by_table,
         groups={heading: column_comments(file) for file, heading in _HEADING_BY_SCHEMA_FILE.items()},
         vocabularies=vocabularies(),
     )
@@ -110,19 +110,21 @@ def table_text(name: str) -> str:
         raise UsageError(f"docs dictionary {name}: no table {name!r}: {advice}")
     columns = [(column, _column_types()[name, column], comment) for column, comment in column_comments()[name].items()]
     wide, wider = (max(len(row[i]) for row in columns) for i in (0, 1))
-    said = [
+    facts = [
         line
         for line in (_derivation_comment(name), " ".join(_table_facts(name, sources_of_derived_tables(), ", ".join)))
         if line
     ]
     rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
-    return "\n".join([name, *said, *rows]) + "\n"
+    return "\n".join([name, *facts, *rows]) + "\n"
 
 
 def _vocabulary_text(name: str) -> str:
     """Return a vocabulary as plain text: its name, its words and their meaning."""
-    known = vocabularies()[name]
-    return f"[{name}]\n  {', '.join(known.words)}{'' if known.has_all_words else ', ...'}\n  {known.says}\n"
+    vocabulary = vocabularies()[name]
+    return (
+        f"[{name}]\n  {', '.join(vocabulary.words)}{'' if vocabulary.has_all_words else ', ...'}\n  {vocabulary.says}\n"
+    )
 
 
 def escape_markdown(text: str) -> str:
@@ -140,8 +142,10 @@ def output_tables_text() -> str:
 def sources_of_derived_tables() -> Mapping[str, tuple[str, ...]]:
     """Return derived table -> tables that its SELECT reads, in the order of derivation."""
     return {
-        name: tuple(sorted(syntax.tables_read(syntax.parse_select(each.sql, name)) & column_comments().keys() - {name}))
-        for name, each in derivations().items()
+        name: tuple(
+            sorted(syntax.tables_read(syntax.parse_select(derivation.sql, name)) & column_comments().keys() - {name})
+        )
+        for name, derivation in derivations().items()
     }
 
 
@@ -149,7 +153,7 @@ def derivation_levels(sources_by_table: Mapping[str, Iterable[str]]) -> list[lis
     """Return the derived tables per level; each table reads only recorded tables and tables of lower levels."""
     level: dict[str, int] = {}
     for name, tables in sources_by_table.items():
-        level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
+        level[name] = 1 + max((level.get(table, 0) for table in tables), default=0)
     return [[name for name in sorted(level) if level[name] == n] for n in range(1, max(level.values()) + 1)]
 
 
@@ -173,7 +177,7 @@ def _table_facts(
         sentences.append(
             f"Reads {join_names(sources_by_table[name])}." if sources_by_table[name] else "Reads no table."
         )
-    if readers := [each for each, tables in sources_by_table.items() if name in tables]:
+    if readers := [table for table, tables in sources_by_table.items() if name in tables]:
         sentences.append(f"Read by {join_names(sorted(readers))}.")
     if rules := [rule_id for rule_id, reads in _tables_read_by_rules() if name in reads]:
         sentences.append(f"Rules: {', '.join(rules)}.")

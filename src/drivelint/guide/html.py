@@ -56,14 +56,14 @@ def plain_text(inline: Token) -> str:
 
 def _set_heading_ids(tokens: Sequence[Token]) -> None:
     """Give every heading the same id as GitHub does."""
-    seen: Counter[str] = Counter()
+    count_by_slug: Counter[str] = Counter()
     for opening, inline in pairwise(tokens):
         if opening.type == "heading_open":
             slug = re.sub(r"[^\w\- ]", "", "".join(child.content for child in inline.children or ()).lower()).replace(
                 " ", "-"
             )
-            opening.attrSet("id", f"{slug}-{seen[slug]}" if seen[slug] else slug)
-            seen[slug] += 1
+            opening.attrSet("id", f"{slug}-{count_by_slug[slug]}" if count_by_slug[slug] else slug)
+            count_by_slug[slug] += 1
 
 
 def _redirect_links_to_site_pages(tokens: Sequence[Token]) -> None:

@@ -57,9 +57,9 @@ def inspect(request: InspectRequest) -> model.Inspection:
     Errors: `TraceError` for a missing file, `UsageError`, `RuleError`, and `MapError` for an unreadable map. The result reports a map
     that does not cover the drive.
     """
-    library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
-    selection = request.rules or packs_of_nation(known, request, library)
-    rules = catalogue.select_rules(known, selection, ())
+    library, rules_by_id = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
+    selection = request.rules or packs_of_nation(rules_by_id, request, library)
+    rules = catalogue.select_rules(rules_by_id, selection, ())
     paths = expand_traces([request.trace])
     if len(paths) != 1:
         raise UsageError(
@@ -133,12 +133,12 @@ def _inspect_drive(
 
 def _trace_map_and_problem(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
     try:
-        found = drive_with_map(trace, library)
+        drive = drive_with_map(trace, library)
     except MapError as error:
         return trace, None, str(error)
-    rows = found.trace.tables["quality"].to_pylist()
-    own = next((row["message"] for row in rows if row["check_id"] == OWN_MAP_UNUSABLE_CHECK), None)
-    return found.trace, found.environment, own if found.environment is None else None
+    rows = drive.trace.tables["quality"].to_pylist()
+    problem = next((row["message"] for row in rows if row["check_id"] == OWN_MAP_UNUSABLE_CHECK), None)
+    return drive.trace, drive.environment, problem if drive.environment is None else None
 
 
 def _egos_and_quality(
@@ -151,9 +151,9 @@ def _egos_and_quality(
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
-    known = _KnownConditions()
+    conditions = _KnownConditions()
     with store.temporary_database(memory) as con:
-        session = JudgingSession(con, (), {}, None, observers=[known], memory=MemoryLimit(con, memory))
+        session = JudgingSession(con, (), {}, None, observers=[conditions], memory=MemoryLimit(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _query_rows(con, f"FROM {table}") for table in ("capability", "exposure")}
         fits = _query_rows(con, statement("inspect/registration")) if environment is not None else []
@@ -167,15 +167,17 @@ def _egos_and_quality(
     egos = []
     for way in sorted(rows["exposure"], key=lambda row: str(row["ego_id"])):
         ego_id = way["ego_id"]
-        mine = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
-        lacking = {signal: reason_text.sentence(row["reason"]) for signal, row in mine.items() if not row["available"]}
+        row_by_signal = {row["signal"]: row for row in rows["capability"] if row["ego_id"] == ego_id}
+        lacking = {
+            signal: reason_text.sentence(row["reason"]) for signal, row in row_by_signal.items() if not row["available"]
+        }
         asks = {
             signal: reason_text.text_of(reason_text.parse_reason(row["reason"]).code).advice
-            for signal, row in mine.items()
+            for signal, row in row_by_signal.items()
         }
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
-        never = advice.reasons_of_never_known_signals(known.known_by_ego[ego_id], lacking)
+        never = advice.reasons_of_never_known_signals(conditions.known_by_ego[ego_id], lacking)
         cannot = advice.undecided_rules(rules, lacking, never)
         undecided = {rule.rule_id for rule in cannot}
         egos.append(
@@ -200,8 +202,8 @@ class _KnownConditions:
 
     def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
         columns = {**dict.fromkeys(conditions.RULE_CONDITION_VALUES), "limit": None}
-        known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
-        for row in _query_rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
+        counts = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
+        for row in _query_rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {counts} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")
             self.known_by_ego[ego] = {c: row[c] or self.known_by_ego.get(ego, {}).get(c, False) for c in row}
 
@@ -221,10 +223,10 @@ def _query_rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]
 def _ego_source_text(trace: Trace, ego_option: str | None) -> str:
     if ego_option is not None:
         return "every motor vehicle in turn (--ego all)" if ego_option == "all" else "chosen with --ego"
-    said = {row["check_id"]: row["message"] for row in trace.tables["quality"].to_pylist()}
-    if "no_ego" in said:
-        return str(said["no_ego"])
-    if "ego_assumed" in said:
+    messages = {row["check_id"]: row["message"] for row in trace.tables["quality"].to_pylist()}
+    if "no_ego" in messages:
+        return str(messages["no_ego"])
+    if "ego_assumed" in messages:
         return "assumed: the first vehicle of the file, as the mapping says (--ego ID to choose another)"
     log_format = trace.tables["data_log"]["format"][0].as_py()
     words = format_title_and_ego(log_format)

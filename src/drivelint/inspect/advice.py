@@ -32,32 +32,32 @@ def reasons_of_never_known_signals(
 
     `reason_by_missing_signal`: signal -> reason, for signals that the whole log or map lacks; its reasons take precedence.
     """
-    found = {}
-    for name in (name for name, known in knowledge.items() if not known):
+    reasons = {}
+    for name in (name for name, is_known in knowledge.items() if not is_known):
         signal = SIGNAL_OF_CONDITION.get(name, name)
-        found[signal] = reason_by_missing_signal.get(
+        reasons[signal] = reason_by_missing_signal.get(
             signal, REASON_BY_SIGNAL_MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}")
         )
-    return found
+    return reasons
 
 
 def undecided_rules(
     rules: Sequence[Rule], reason_by_missing_signal: Mapping[str, str], never_known: Mapping[str, str]
 ) -> list[Undecided]:
     """Return the rules that cannot be decided because a signal is missing or a condition is never known."""
-    found = []
+    undecided = []
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricted_conditions}
         conditions |= {"speed_limits"} if rule.applies.has_speed_limit_condition else set()
-        needed = set(rule.needed_signals) & reason_by_missing_signal.keys() | conditions & never_known.keys()
-        missing = needed | set(rule.pass_requires) & never_known.keys()
-        if "map" in missing:
-            missing -= SIGNALS_NEEDING_MAP
-        if missing:
-            found.append(
-                Undecided(rule_id=rule.id, title=rule.title, missing_signals=sorted(missing), breach_only=not needed)
+        blocking = set(rule.needed_signals) & reason_by_missing_signal.keys() | conditions & never_known.keys()
+        lacking = blocking | set(rule.pass_requires) & never_known.keys()
+        if "map" in lacking:
+            lacking -= SIGNALS_NEEDING_MAP
+        if lacking:
+            undecided.append(
+                Undecided(rule_id=rule.id, title=rule.title, missing_signals=sorted(lacking), breach_only=not blocking)
             )
-    return found
+    return undecided
 
 
 def missing_signals(
@@ -71,7 +71,7 @@ def missing_signals(
     for rule in undecided:
         for signal in rule.missing_signals:
             by_signal.setdefault(signal, []).append(rule)
-    found = [
+    signals = [
         MissingSignal(
             signal=signal,
             reason=reason_by_missing_signal[signal],
@@ -81,4 +81,4 @@ def missing_signals(
         )
         for signal, waiting in by_signal.items()
     ]
-    return sorted(found, key=lambda item: (-len(item.rules), item.signal))
+    return sorted(signals, key=lambda item: (-len(item.rules), item.signal))

@@ -138,10 +138,10 @@ def _listing_of_mapped_table(path: Path, mapping: Mapping) -> Sheet:
     sheet = open_sheet(path, mapping)
     columns = _columns_of_mapping(mapping)
     shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
-    grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
+    is_grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
     unread = [name for name in sheet.names if name and not any(shape.fullmatch(name) for shape in shapes)]
-    others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if grouped else name for name in unread)
-    columns += _unread_columns(others)
+    names = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if is_grouped else name for name in unread)
+    columns += _unread_columns(names)
     rows = parquet.n_rows(path) if isinstance(sheet, ParquetSheet) else None
     return Sheet(name=path.name, rows=rows, columns=columns)
 
@@ -149,25 +149,25 @@ def _listing_of_mapped_table(path: Path, mapping: Mapping) -> Sheet:
 def _video_detections_sheet(path: Path, film: VideoMapping) -> Sheet:
     """Return the columns of a table of video detections, first the columns that the mapping reads."""
     names = CsvSheet(path, TextLayout()).names
-    read = {film.frames.column: ["time"]} | {
+    meanings = {film.frames.column: ["time"]} | {
         str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
     }
-    columns = [Column(name=name, read_as=read_as) for name, read_as in read.items()]
-    columns += _unread_columns(name for name in names if name and name not in read)
+    columns = [Column(name=name, read_as=read_as) for name, read_as in meanings.items()]
+    columns += _unread_columns(name for name in names if name and name not in meanings)
     return Sheet(name=path.name, rows=None, columns=columns)
 
 
 def _columns_of_mapping(mapping: Mapping) -> list[Column]:
-    found: dict[str, list[str]] = {mapping.time.column: ["time"]}
+    meanings: dict[str, list[str]] = {mapping.time.column: ["time"]}
     units: dict[str, str | None] = {mapping.time.column: mapping.time.unit}
     for name, spec in mappings.fields(mapping).items():
         if spec.column is not None:
-            found.setdefault(spec.column, []).append(name)
+            meanings.setdefault(spec.column, []).append(name)
             units[spec.column] = units.get(spec.column) or spec.unit
     for name, (words, _) in mappings.word_mappings(mapping).items():
         for column in words.columns:
-            found.setdefault(column, []).append(name.removeprefix("actor_"))
-    return [Column(name=name, read_as=read_as, unit=units.get(name)) for name, read_as in found.items()]
+            meanings.setdefault(column, []).append(name.removeprefix("actor_"))
+    return [Column(name=name, read_as=read_as, unit=units.get(name)) for name, read_as in meanings.items()]
 
 
 @dataclass
@@ -210,7 +210,7 @@ def _mapped_topics(mapping: str | None) -> set[str]:
     if mapping is None or not topic_mapping.is_message_mapping(mapping):
         return set()
     try:
-        return {each.topic for each in topic_mapping.load(Path(mapping)).ros}
+        return {channel.topic for channel in topic_mapping.load(Path(mapping)).ros}
     except UsageError:
         return set()  # reading the drive reports it
 

@@ -32,32 +32,36 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
 
     `texts_of`: a function that returns the distinct texts of a column.
     """
-    found: dict[str, str] = {}
+    column_by_field: dict[str, str] = {}
     for column in columns:
-        meant = _field_of_column(column)
-        if meant is not None:
-            found.setdefault(meant, column)
+        field = _field_of_column(column)
+        if field is not None:
+            column_by_field.setdefault(field, column)
     for pair in (("vx", "vy"), ("ax", "ay")):
-        if sum(name in found for name in pair) == 1:
-            found = {name: column for name, column in found.items() if name not in pair}
-    if "vx" in found or "yaw" not in found:
-        found.pop("speed", None)
+        if sum(name in column_by_field for name in pair) == 1:
+            column_by_field = {name: column for name, column in column_by_field.items() if name not in pair}
+    if "vx" in column_by_field or "yaw" not in column_by_field:
+        column_by_field.pop("speed", None)
     if len(columns) < len(REQUIRED_FIELDS):
         return None
     frames = next(
         (column for column in columns if "frame" in (words := _column_words(column)) and words <= _FRAMES), None
     )
-    time_unit = "time" in found and _unit_in_column_name(found["time"], dict(TIME_UNITS))
-    if frames is not None and "time" not in found:
-        found["time"], time_unit = frames, "frames"
-    classes = {text: _actor_class_of(text) for text in texts_of(found["class"])} if "class" in found else {}
-    of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
+    time_unit = "time" in column_by_field and _unit_in_column_name(column_by_field["time"], dict(TIME_UNITS))
+    if frames is not None and "time" not in column_by_field:
+        column_by_field["time"], time_unit = frames, "frames"
+    classes = (
+        {text: _actor_class_of(text) for text in texts_of(column_by_field["class"])}
+        if "class" in column_by_field
+        else {}
+    )
+    of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in column_by_field}
     draft = text_template(__file__, "mapping_draft.toml.j2", text=_toml_string).render(
-        column_by_field=found,
-        others=[column for column in columns if column not in found.values()],
+        column_by_field=column_by_field,
+        others=[column for column in columns if column not in column_by_field.values()],
         time_unit=time_unit or "s",
         units={
-            name: (_unit_in_column_name(found[name], units), next(iter(units), None))
+            name: (_unit_in_column_name(column_by_field[name], units), next(iter(units), None))
             for name, units in of_fields.items()
         },
         order=_FIELD_ORDER,
@@ -82,9 +86,9 @@ def _field_of_column(column: str) -> str | None:
         return _field_of_axis(next(iter(axes)), words, bare)
     if words & _OTHERS:
         return None
-    for meant, some in _WORDS_OF_FIELD.items():
+    for field, some in _WORDS_OF_FIELD.items():
         if not words.isdisjoint(some):
-            return meant
+            return field
     if (bare and bare <= _TIME) or "nanos" in words:
         return "time"
     return "actor_id" if bare and bare <= _ID else None
@@ -104,8 +108,8 @@ def _column_words(column: str) -> set[str]:
 
 def _unit_in_column_name(column: str, unit_factors: Mapping[str, float]) -> str | None:
     in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
-    named = [*in_brackets, *(_UNIT_BY_WORD.get(word) for word in sorted(_column_words(column)))]
-    return next((unit for unit in named if unit in unit_factors), None)
+    units = [*in_brackets, *(_UNIT_BY_WORD.get(word) for word in sorted(_column_words(column)))]
+    return next((unit for unit in units if unit in unit_factors), None)
 
 
 def _toml_string(value: str) -> str:

@@ -135,24 +135,24 @@ def _channel_text(channel: model.Channel) -> Text:
 
 def _sheet_text(sheet: model.Sheet) -> Text:
     rows = "" if sheet.rows is None else f"{plural(sheet.rows, 'row')}, "
-    read = [c for c in sheet.columns if c.read_as]
-    if not read:
+    columns = [c for c in sheet.columns if c.read_as]
+    if not columns:
         names = [c.name for c in sheet.columns]
         return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {name_list(names, MAX_LISTED_TEXTS)}")
     per_actor = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
-    whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
-    text = Text(f"{whole} read: {', '.join(_column_text(column, per_actor=per_actor) for column in read)}")
-    if others := [c.name for c in sheet.columns if not c.read_as]:
-        names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
+    whole = f"{rows}{len(columns)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
+    text = Text(f"{whole} read: {', '.join(_column_text(column, per_actor=per_actor) for column in columns)}")
+    if unread := [c.name for c in sheet.columns if not c.read_as]:
+        names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in unread]
         text.append(f"; not read: {name_list(names, MAX_LISTED_TEXTS)}", style="dim")
     return text
 
 
 def _column_text(column: model.Column, *, per_actor: bool) -> str:
     """Return the quantity that a column is read as. The column's name is added if it differs, except in a wide table."""
-    meant = " and ".join(column.read_as)
+    meaning = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
-    return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"
+    return f"{meaning}{unit}" if per_actor or meaning == column.name else f"{column.name}{unit} as {meaning}"
 
 
 def _drive_lines(drive: model.Drive) -> Iterator[Line]:
@@ -196,8 +196,8 @@ def _actor_text(actor: model.Actor) -> str:
         box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
     way = f"{actor.way_m / 1000:.2f} km" if actor.way_m >= 1000 else f"{actor.way_m:.0f} m"
     speed = "" if actor.top_speed_mps is None else f", up to {actor.top_speed_mps:.1f} m/s"
-    seen = f"from {actor.first_at_s:.1f} to {actor.last_at_s:.1f} s"
-    return f"{actor.actor_class or 'class unknown'}, {box}, {way}{speed}, {seen}"
+    span = f"from {actor.first_at_s:.1f} to {actor.last_at_s:.1f} s"
+    return f"{actor.actor_class or 'class unknown'}, {box}, {way}{speed}, {span}"
 
 
 def _map_lines(drive: model.Drive) -> Iterator[Line]:
@@ -266,18 +266,18 @@ def _decidable_rules(drive: model.Drive, log: str) -> Group:
 def _decidable_rules_of_egos(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
     selection = name_list(drive.selection, _MAX_LISTED_NAMES)
-    who = ""
+    egos_text = ""
     if not drive.egos:
-        who = f" with --ego {ego.actor.actor_id}"
+        egos_text = f" with --ego {ego.actor.actor_id}"
     elif len(drive.egos) > 1:
-        who = f" for {'ego' if len(egos) == 1 else 'egos'} {name_list([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
+        egos_text = f" for {'ego' if len(egos) == 1 else 'egos'} {name_list([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
     parts: list[RenderableType] = [
-        Text(f"{log} can decide {_decidable_count_text(ego, drive, selection)}{who}.", style=style)
+        Text(f"{log} can decide {_decidable_count_text(ego, drive, selection)}{egos_text}.", style=style)
     ]
     if ego.can:
-        told = (f"{_short_rule_id(rule, drive)}{_DRAFT_MARK if rule in drive.drafts else ''}" for rule in ego.can)
-        parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
+        rule_names = (f"{_short_rule_id(rule, drive)}{_DRAFT_MARK if rule in drive.drafts else ''}" for rule in ego.can)
+        parts.append(Text(f"It can: {', '.join(rule_names)}.", style="dim"))
     if ego.missing_signals:
         parts += [Text("\nTo decide more, provide:", style="bold"), _missing_signals_table(ego)]
         parts += [
@@ -320,10 +320,10 @@ def _undecided_rules_table(ego: model.Ego, drafts: Sequence[str]) -> Table:
     """Return a table of the undecidable rules, with one row per set of missing signals."""
     grid = _empty_label_table("yellow", overflow="fold")
     waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing_signals))
-    for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
+    for signals, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
         ids = (
             f"{rule.rule_id}{_DRAFT_MARK if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"
             for rule in rules
         )
-        grid.add_row(" + ".join(missing), Text(", ".join(ids)))
+        grid.add_row(" + ".join(signals), Text(", ".join(ids)))
     return grid

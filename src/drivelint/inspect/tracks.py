@@ -57,11 +57,11 @@ def actors(trace: Trace) -> list[Actor]:
     way = np.add.reduceat(step, firsts)
     top = np.fmax.reduceat(np.hypot(vx, vy), firsts)
     times = states["t_ns"].to_numpy()
-    known = {row["actor_id"]: row for row in trace.tables["actor"].to_pylist()}
+    row_by_id = {row["actor_id"]: row for row in trace.tables["actor"].to_pylist()}
     names = encoded.dictionary.take(encoded.indices.take(firsts)).to_pylist()
     return [
         Actor(
-            **{key: known[name][key] for key in ("actor_id", "actor_class", "length_m", "width_m")},
+            **{key: row_by_id[name][key] for key in ("actor_id", "actor_class", "length_m", "width_m")},
             states=int(counts[k]),
             first_at_s=(int(times[firsts[k]]) - start) / 1e9,
             last_at_s=(int(times[firsts[k] + counts[k] - 1]) - start) / 1e9,

@@ -78,8 +78,8 @@ class Arguments:
     def __init_subclass__(cls, *, kw_only: bool = True) -> None:
         """Find the fields of the class; those of its last base come first, and a field that is declared again keeps its place."""
         cls.fields_by_name = {}
-        for each in reversed(cls.__bases__):
-            cls.fields_by_name |= getattr(each, "fields_by_name", {})
+        for base in reversed(cls.__bases__):
+            cls.fields_by_name |= getattr(base, "fields_by_name", {})
         for name, annotation in get_annotations(cls).items():
             kind, option = get_args(annotation) if hasattr(annotation, "__metadata__") else (annotation, Option(""))
             default = vars(cls).get(name, Parameter.empty)
@@ -88,33 +88,33 @@ class Arguments:
             )
 
     def __init__(self, *positional: Any, **keywords: Any) -> None:
-        names = [each.name for each in self.fields_by_name.values() if each.is_positional]
-        defaults = {each.name: each.default for each in self.fields_by_name.values()}
+        names = [declared.name for declared in self.fields_by_name.values() if declared.is_positional]
+        defaults = {declared.name: declared.default for declared in self.fields_by_name.values()}
         vars(self).update(defaults | dict(zip(names, positional, strict=False)) | keywords)
 
 
 def declared_options(arguments: type[Arguments]) -> tuple[DeclaredOption, ...]:
     """Return the options that a class of arguments declares, the positional ones first."""
     options: list[DeclaredOption] = []
-    for each in arguments.fields_by_name.values():
-        if each.option.help:
-            names, place = [option.name for option in options], each.option.place_after
-            options.insert(names.index(place) + 1 if place else len(options), each)
-    return tuple(sorted(options, key=lambda each: not each.is_positional))
+    for declared in arguments.fields_by_name.values():
+        if declared.option.help:
+            names, place = [option.name for option in options], declared.option.place_after
+            options.insert(names.index(place) + 1 if place else len(options), declared)
+    return tuple(sorted(options, key=lambda declared: not declared.is_positional))
 
 
 def python_signature(arguments: type[Arguments], returns: Any) -> Signature:
     """Return the signature of a function in Python that takes these arguments, with the names of their types as texts."""
     parameters = [
         Parameter(
-            each.name,
-            Parameter.POSITIONAL_OR_KEYWORD if each.is_positional else Parameter.KEYWORD_ONLY,
-            default=each.default,
-            annotation=each.type.name,
+            declared.name,
+            Parameter.POSITIONAL_OR_KEYWORD if declared.is_positional else Parameter.KEYWORD_ONLY,
+            default=declared.default,
+            annotation=declared.type.name,
         )
-        for each in arguments.fields_by_name.values()
+        for declared in arguments.fields_by_name.values()
     ]
-    return Signature(sorted(parameters, key=lambda each: each.kind), return_annotation=returns)
+    return Signature(sorted(parameters, key=lambda declared: declared.kind), return_annotation=returns)
 
 
 def engine_values(arguments: Arguments, group: type[Arguments] | None = None) -> dict[str, Any]:
@@ -123,8 +123,8 @@ def engine_values(arguments: Arguments, group: type[Arguments] | None = None) ->
     Errors: `UsageError` for an invalid value.
     """
     return {
-        each.field: each.engine_value(getattr(arguments, each.name))
-        for each in declared_options(group or type(arguments))
+        declared.field: declared.engine_value(getattr(arguments, declared.name))
+        for declared in declared_options(group or type(arguments))
     }
 
 
@@ -132,5 +132,5 @@ def options_of_engine(
     kind: Callable[..., _OptionsOfEngine], values: dict[str, Any], **replacements: Any
 ) -> _OptionsOfEngine:
     """Return an instance of the dataclass `kind` with those of the values that it has fields for, and with the replacements."""
-    names = {each.name for each in fields(kind)}  # type: ignore[arg-type]
+    names = {field.name for field in fields(kind)}  # type: ignore[arg-type]
     return kind(**{name: value for name, value in values.items() if name in names} | replacements)

@@ -33,21 +33,33 @@ _WAIVERS_SCHEMA: Final = {
 
 def settable_options() -> dict[str, DeclaredOption]:
     """Return key -> option of `check`, for the options that a settings file may set."""
-    options = {each.flags[0].partition("/")[0].lstrip("-"): each for each in declared_options(CheckCommandArguments)}
-    return {key: each for key, each in options.items() if not each.is_positional and key not in _OPTIONS_NOT_IN_FILE}
+    options = {
+        declared.flags[0].partition("/")[0].lstrip("-"): declared
+        for declared in declared_options(CheckCommandArguments)
+    }
+    return {
+        key: declared
+        for key, declared in options.items()
+        if not declared.is_positional and key not in _OPTIONS_NOT_IN_FILE
+    }
 
 
 def settings_of_check(file: Path) -> dict[str, Any]:
     """Return the settings of a file as parameter of the command line -> value. Errors: `UsageError`."""
-    known = settable_options()
-    paths = {key for key, each in known.items() if each.type is NAME_OR_PATH or _value_type(each) in {Path, list[Path]}}
-    return read_settings({key: (each.field, _is_repeatable(each)) for key, each in known.items()}, file, paths)
+    options = settable_options()
+    paths = {
+        key
+        for key, option in options.items()
+        if option.type is NAME_OR_PATH or _value_type(option) in {Path, list[Path]}
+    }
+    return read_settings({key: (option.field, _is_repeatable(option)) for key, option in options.items()}, file, paths)
 
 
 def settings_schema() -> str:
     """Return the JSON schema of `drivelint.toml`, with a final newline."""
     properties = {
-        key: {**_value_schema(each), "description": each.option.help} for key, each in settable_options().items()
+        key: {**_value_schema(declared), "description": declared.option.help}
+        for key, declared in settable_options().items()
     }
     texts = properties["env"]
     values = {"type": "object", "additionalProperties": {"type": ["string", "boolean"]}}

@@ -45,10 +45,10 @@ def to_texts(value: Paths | None) -> tuple[str, ...]:
     if value is None:
         return ()
     several = (value,) if isinstance(value, str | PathLike) else tuple(value)
-    for each in several:
-        if not isinstance(each, str | PathLike):
-            raise UsageError(f"{reprlib.repr(each)} is neither a text nor a path")
-    return tuple(fspath(each) for each in several)
+    for path in several:
+        if not isinstance(path, str | PathLike):
+            raise UsageError(f"{reprlib.repr(path)} is neither a text nor a path")
+    return tuple(fspath(path) for path in several)
 
 
 def to_path(value: AnyPath | None) -> Path | None:
@@ -58,7 +58,7 @@ def to_path(value: AnyPath | None) -> Path | None:
 
 def to_paths(value: Paths | None) -> tuple[Path, ...]:
     """Return one or several paths as a tuple of paths."""
-    return tuple(Path(each) for each in to_texts(value))
+    return tuple(Path(text) for text in to_texts(value))
 
 
 def to_text(value: AnyPath | int | None) -> str | None:
@@ -119,8 +119,8 @@ OPTION_TYPES: Final[dict[Any, OptionType]] = {
     bool: OptionType("bool", bool),
     bool | None: OptionType("bool | None", bool | None),
     **{
-        each: OptionType(name, each)
-        for name, each in (
+        kind: OptionType(name, kind)
+        for name, kind in (
             ("FailOn", FailOn),
             ("Handedness", Handedness),
             ("Visibility", Visibility),

@@ -26,10 +26,10 @@ CREATE OR REPLACE TEMP TABLE _worded
 
 def _json(arguments: Mapping[str, Any]) -> str:
     """Return arguments as JSON, with null for NaN and infinity, which JSON does not have."""
-    told = {
+    values = {
         name: None if isinstance(value, float) and not isfinite(value) else value for name, value in arguments.items()
     }
-    return json.dumps(told)
+    return json.dumps(values)
 
 
 def make_reason_table(
@@ -53,7 +53,9 @@ def make_reason_table(
         "cause": pa.array([cause for _, cause, _ in causes], pa.string()),
         "start_ns": pa.array([start_ns for _, _, start_ns in causes], pa.int64()),
         "words": pa.array(sentences, pa.string()),
-        "cause_code": pa.array([each.code for each in reasons], pa.string()),
-        "cause_args": pa.array([_json(each.arguments) if each.arguments else None for each in reasons], pa.string()),
+        "cause_code": pa.array([reason.code for reason in reasons], pa.string()),
+        "cause_args": pa.array(
+            [_json(reason.arguments) if reason.arguments else None for reason in reasons], pa.string()
+        ),
     }
     store.insert(con, "_worded", pa.table(rows))

@@ -92,19 +92,21 @@ def sentence_if_it_has_advice(
     code: str, arguments: Mapping[str, Any], start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None
 ) -> str | None:
     """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
-    nested = (sentence_if_it_has_advice(*each, start_ns, rule_texts) for each in _nested_reasons(arguments))
+    nested = (
+        sentence_if_it_has_advice(*nested_reason, start_ns, rule_texts) for nested_reason in _nested_reasons(arguments)
+    )
     return _sentence(code, arguments, start_ns, rule_texts) if text_of(code, rule_texts).advice or any(nested) else None
 
 
 def code_and_nested_codes(code: str, arguments: Mapping[str, Any]) -> set[str]:
     """Return a code and the codes of the reasons among its arguments."""
-    return {code}.union(*(code_and_nested_codes(*each) for each in _nested_reasons(arguments)))
+    return {code}.union(*(code_and_nested_codes(*reason) for reason in _nested_reasons(arguments)))
 
 
 def _nested_reasons(arguments: Mapping[str, Any]) -> list[Reason]:
     """Return those arguments of a reason that are reasons themselves."""
-    found = [parse_reason(value) for value in arguments.values() if isinstance(value, str)]
-    return [reason for reason in found if reason.code != PLAIN_TEXT_CODE]
+    reasons = [parse_reason(value) for value in arguments.values() if isinstance(value, str)]
+    return [reason for reason in reasons if reason.code != PLAIN_TEXT_CODE]
 
 
 def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> ReasonText:
@@ -119,7 +121,7 @@ def _sentence_from_template(
     for part in _OPTIONAL.findall(template):
         absent = any(argument_words.get(name) is None for name, _ in _ARGUMENT.findall(part))
         template = template.replace(f"[{part}]", "" if absent else part, 1)
-    return _ARGUMENT.sub(lambda found: _formatted_value(argument_words.get(found[1]), found[2] or ""), template)
+    return _ARGUMENT.sub(lambda match: _formatted_value(argument_words.get(match[1]), match[2] or ""), template)
 
 
 def _formatted_value(value: Any, spec: str) -> str:

@@ -95,10 +95,10 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
             continue
         built[lane.lanelet_id] = lane
     for lane in built.values():
-        lost = [name for name in lane.successors if name not in built]
-        if lost:
-            message = f"lanelet {lane.lanelet_id} leads to {', '.join(lost)}, which the map does not contain"
-            quality.add("missing_link", "warning", lane.lanelet_id, message, len(lost))
+        lacking = [name for name in lane.successors if name not in built]
+        if lacking:
+            message = f"lanelet {lane.lanelet_id} leads to {', '.join(lacking)}, which the map does not contain"
+            quality.add("missing_link", "warning", lane.lanelet_id, message, len(lacking))
         lane.successors = tuple(name for name in lane.successors if name in built)
         if lane.left_id not in built:
             lane.left_id = lane.left_against = None

@@ -36,7 +36,7 @@ def only_nation(codes: Iterable[str | None]) -> str | None:
 @cache
 def _nation_by_code() -> dict[str | int | None, str]:
     countries: dict[str, tuple[str, int]] = toml_beside(__file__, "countries.toml")["countries"]
-    found: dict[str | int | None, str] = {"uk": "gb"}
+    nations: dict[str | int | None, str] = {"uk": "gb"}
     for letters, (three, number) in countries.items():
-        found |= {letters: letters, three: letters, number: letters}
-    return found
+        nations |= {letters: letters, three: letters, number: letters}
+    return nations

@@ -79,10 +79,10 @@ def _opposing_lengths_m(segments: _LaneSegments, most_gap_m: float) -> tuple[flo
     Gaps of more than `most_gap_m` do not count. If both sides have an opposite lane, only the nearer counts.
     """
     n = len(segments.lane)
-    chosen = np.unique(np.linspace(0, n - 1, min(_MOST_EXAMINED_SEGMENTS, n)).astype(np.intp))
+    sample = np.unique(np.linspace(0, n - 1, min(_MOST_EXAMINED_SEGMENTS, n)).astype(np.intp))
     tree = shapely.STRtree(shapely.linestrings(np.stack([segments.begin[:, :2], segments.end[:, :2]], axis=1)))
-    left, right = (_gaps_to_opposing_m(segments, tree, chosen, side, most_gap_m) for side in (1.0, -1.0))
-    length = segments.length[chosen]
+    left, right = (_gaps_to_opposing_m(segments, tree, sample, side, most_gap_m) for side in (1.0, -1.0))
+    length = segments.length[sample]
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 

@@ -120,22 +120,22 @@ def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.f
     with store.open_without_creating_tables() as con:
         store.lock_down(con)  # a reference may contain the names of grid files
         con.register("places", pa.table({"x": xy[:, 0], "y": xy[:, 1]}))
-        found = con.execute(sql, {"source": source, "target": target}).fetchnumpy()
-    return np.stack([np.ma.filled(found[axis], np.nan) for axis in ("x", "y")], axis=1)
+        columns = con.execute(sql, {"source": source, "target": target}).fetchnumpy()
+    return np.stack([np.ma.filled(columns[axis], np.nan) for axis in ("x", "y")], axis=1)
 
 
 def _has_local_origin(reference: str) -> bool:
     """Return whether a PROJ string has its own latitude of origin; UTM ignores this parameter."""
-    said = dict(_reference_parameters(reference))
-    return said.get("proj") != "utm" and said.get("lat_0", "0.0") != "0.0"
+    parameters = dict(_reference_parameters(reference))
+    return parameters.get("proj") != "utm" and parameters.get("lat_0", "0.0") != "0.0"
 
 
 def opendrive_geo_reference(source: MapSource) -> str | None:
     """Return the geo reference in an OpenDRIVE header; None: it is absent or empty."""
-    found = _GEO_REFERENCE_ELEMENT.search(source.content[:_SEARCHED_BYTES])
-    if found is None:
+    match = _GEO_REFERENCE_ELEMENT.search(source.content[:_SEARCHED_BYTES])
+    if match is None:
         return None
-    text = found[1].decode("utf-8", "replace")
+    text = match[1].decode("utf-8", "replace")
     inner = _CDATA.search(text)
     return (inner[1] if inner else text).strip() or None
 
@@ -162,8 +162,8 @@ def _reference_parameters(text: str) -> frozenset[tuple[str, str]]:
     if not any(word.startswith("+") for word in words):
         return frozenset({("", " ".join(words))})
     pairs = (word.removeprefix("+").partition("=")[::2] for word in words)
-    said = {(key, _rounded_if_number(value)) for key, value in pairs if key not in _PARAMETERS_WITHOUT_EFFECT}
-    return frozenset(said - _DEFAULT_PARAMETERS)
+    parameters = {(key, _rounded_if_number(value)) for key, value in pairs if key not in _PARAMETERS_WITHOUT_EFFECT}
+    return frozenset(parameters - _DEFAULT_PARAMETERS)
 
 
 def _rounded_if_number(value: str) -> str:

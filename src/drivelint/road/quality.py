@@ -45,10 +45,10 @@ class MapQuality:
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
         """Return a word of the map in the vocabulary's spelling, whatever its case; None, and count it, if it is unknown."""
-        known = vocabularies()[vocabulary].known_spelling(word)
-        if known is None:
+        spelling = vocabularies()[vocabulary].known_spelling(word)
+        if spelling is None:
             self._unknown_words[vocabulary][word] += 1
-        return known
+        return spelling
 
     def add(self, check: str, severity: str, lanelet: str | None, message: str, n: int = 1) -> None:
         """Add a row; `lanelet`: the lanelet or road concerned, None: the whole map."""
@@ -64,9 +64,9 @@ class MapQuality:
         """Return the rows, the most severe first, including one for each kind of counted problem."""
         rows = list(self.rows)
         for vocabulary, words in self._unknown_words.items():
-            severity, what, follows = _EFFECTS_OF_UNKNOWN_WORDS[vocabulary]
-            counted = name_list([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
-            message = f"{what} with unknown names: {counted}: {follows}"
+            severity, subject, follows = _EFFECTS_OF_UNKNOWN_WORDS[vocabulary]
+            names = name_list([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
+            message = f"{subject} with unknown names: {names}: {follows}"
             if words:
                 rows.append(_quality_row("unknown_word", severity, None, message, words.total()))
         if self._stand_ins:

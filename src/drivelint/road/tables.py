@@ -73,8 +73,10 @@ def map_tables(
         "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED_CHECK for row in quality.rows),
     }  # fmt: skip
     about = table_with_owner_id("environment", name, [environment], map_format)
-    found = table_with_owner_id("map_quality", name, quality.sorted_rows(), map_format)
-    return MapTables(name, *side_and_source, {"environment": about, **tables, "map_quality": found}, nation=nation)
+    quality_table = table_with_owner_id("map_quality", name, quality.sorted_rows(), map_format)
+    return MapTables(
+        name, *side_and_source, {"environment": about, **tables, "map_quality": quality_table}, nation=nation
+    )
 
 
 def _why_unusable_for_lanes(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:

@@ -44,12 +44,12 @@ def query_in_parts(
     every = np.asarray(shapes, dtype=object)
     begin, n = 0, SHAPES_IN_FIRST_PART
     while begin < len(every):
-        shape, found = tree.query(every[begin : begin + n], predicate=predicate, distance=distance)
-        if (n_at_one := len(found) // len(every[begin : begin + n])) > MOST_SHAPES_AT_ONE_PLACE:
+        shape, places = tree.query(every[begin : begin + n], predicate=predicate, distance=distance)
+        if (n_at_one := len(places) // len(every[begin : begin + n])) > MOST_SHAPES_AT_ONE_PLACE:
             raise CrowdedPlaceError(n_at_one)
-        yield shape + begin, found
+        yield shape + begin, places
         begin += n
-        n = max(1, min(MOST_GROWTH_FACTOR_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
+        n = max(1, min(MOST_GROWTH_FACTOR_OF_PART * n, n * PAIRS_PER_PART // max(1, len(places))))
 
 
 def all_pairs(
@@ -59,7 +59,7 @@ def all_pairs(
     distance: float | None = None,
 ) -> tuple[Indices, Indices]:
     """Return all parts of `query_in_parts`, concatenated."""
-    none = np.zeros(0, np.intp)
-    parts = [(none, none), *query_in_parts(tree, shapes, predicate, distance)]
+    no_index = np.zeros(0, np.intp)
+    parts = [(no_index, no_index), *query_in_parts(tree, shapes, predicate, distance)]
     first, second = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     return first, second

@@ -60,7 +60,11 @@ def column_types() -> dict[str, dict[str, str]]:
 def word_columns() -> dict[str, dict[str, words.WordColumn]]:
     """Return table -> column -> its vocabulary, for the columns with words of a vocabulary."""
     return {
-        table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
+        table: {
+            column: words_of_column
+            for column, kind, comment in columns
+            if (words_of_column := words.word_column(kind, comment))
+        }
         for table, columns in _column_declarations().items()
     }
 
@@ -81,13 +85,13 @@ def input_quantities_by_column() -> dict[str, dict[str, frozenset[str]]]:
 @cache
 def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
-    found = {table: lifetime for lifetime, table in _LIFETIME.findall(create_statements())}
+    lifetime_by_table = {table: lifetime for lifetime, table in _LIFETIME.findall(create_statements())}
     for table in column_comments():
-        if found.get(table) not in TABLE_LIFETIMES:
+        if lifetime_by_table.get(table) not in TABLE_LIFETIMES:
             raise DriveLintError(
                 f"schemas: table {table!r} has no lifetime: write -- lifetime: {' | '.join(TABLE_LIFETIMES)} above it"
             )
-    return found
+    return lifetime_by_table
 
 
 def tables_of_lifetime(*kinds: str) -> list[str]:

@@ -56,7 +56,7 @@ class Derivation:
 @cache
 def derivations() -> dict[str, Derivation]:
     """Return table -> derivation, ordered so that each derivation follows the tables that it reads."""
-    return {each.table: each for each in _derivations_with_sources(library_tables())}
+    return {derivation.table: derivation for derivation in _derivations_with_sources(library_tables())}
 
 
 @cache

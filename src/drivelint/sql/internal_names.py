@@ -15,7 +15,7 @@ _TABLES_OF_LOGS: Final = frozenset({"actor", "actor_state", "data_log", "declare
 
 def without_internal_names(message: str) -> str:
     """Return an error message of DuckDB without the suggestion of one of its own tables; it says where a table of drivelint is."""
-    return _MISSING_TABLE.sub(lambda found: f"{found[0]}{_place_of_table(found[1])}", _SUGGESTION.sub("", message))
+    return _MISSING_TABLE.sub(lambda match: f"{match[0]}{_place_of_table(match[1])}", _SUGGESTION.sub("", message))
 
 
 def _place_of_table(name: str) -> str:

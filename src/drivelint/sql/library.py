@@ -65,29 +65,29 @@ def library_tables() -> dict[str, LibraryTable]:
 
 def _read_file(file: Path) -> LibraryTable:
     text = file.read_text(encoding="utf-8")
-    found = _FILE.match(text)
-    if found is None or not found[4] == found[5] == file.stem:
+    match = _FILE.match(text)
+    if match is None or not match[4] == match[5] == file.stem:
         raise DriveLintError(
             f"{file}: write a comment, `-- lifetime: part`, `CREATE TABLE {file.stem} (`, `);`, an empty line, "
             f"`INSERT INTO {file.stem} BY NAME` and a SELECT; "
             f"the first that is missing, or not in its place: {_first_missing_part(text, file.stem)}"
         )
-    if found[3] not in _LIFETIMES_OF_LIBRARY_TABLES:
-        known = ", ".join(_LIFETIMES_OF_LIBRARY_TABLES)
+    if match[3] not in _LIFETIMES_OF_LIBRARY_TABLES:
+        lifetimes = ", ".join(_LIFETIMES_OF_LIBRARY_TABLES)
         raise DriveLintError(
-            f"{file}: lifetime {found[3]!r} is none of the library: known are {known}; a table of a SELECT on the egos' steps has part"
+            f"{file}: lifetime {match[3]!r} is none of the library: known are {lifetimes}; a table of a SELECT on the egos' steps has part"
         )
-    if bare := _UNCOMMENTED_COLUMN.search(found[2]):
+    if bare := _UNCOMMENTED_COLUMN.search(match[2]):
         raise DriveLintError(
             f"{file}: column {bare[1]} has no comment: write `-- ` and what it is after it, on the same line"
         )
-    for column, quantities in _COLUMN_WITH_QUANTITIES.findall(found[2]):
+    for column, quantities in _COLUMN_WITH_QUANTITIES.findall(match[2]):
         if unknown := sorted(set(quantities.split(", ")).difference(QUANTITIES)):
             raise DriveLintError(
                 f"{file}: column {column}: {unknown[0]!r} is no quantity of an actor: known are {', '.join(QUANTITIES)}"
             )
-    description = " ".join(line.removeprefix("--").strip() for line in found[1].splitlines())
-    return LibraryTable(file.stem, file.parent.name, file, description, found[2], found[6])
+    description = " ".join(line.removeprefix("--").strip() for line in match[1].splitlines())
+    return LibraryTable(file.stem, file.parent.name, file, description, match[2], match[6])
 
 
 def _first_missing_part(text: str, table: str) -> str:

@@ -23,8 +23,8 @@ class Macro(NamedTuple):
 def macro_texts() -> dict[str, tuple[str, str]]:
     """Return name -> (parameters, value) as text, for every macro whose value is an expression."""
     statements = (statement.query for statement in syntax.parser().extract_statements(macro_definitions()))
-    found = (match for text in statements if (match := _MACRO.search(text)))
-    return {match[1].lower(): (match[2].lower(), match[3].strip().rstrip(";")) for match in found}
+    matches = (match for text in statements if (match := _MACRO.search(text)))
+    return {match[1].lower(): (match[2].lower(), match[3].strip().rstrip(";")) for match in matches}
 
 
 @cache
@@ -37,5 +37,5 @@ def macro(name: str) -> Macro | None:
     tree = syntax.syntax_tree(f"SELECT {value}")
     if tree["error"]:
         return None
-    names = tuple(each.strip() for each in parameters.split(",") if each.strip())
+    names = tuple(parameter.strip() for parameter in parameters.split(",") if parameter.strip())
     return Macro(names, tree["statements"][0]["node"]["select_list"][0])

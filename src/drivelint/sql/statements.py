@@ -17,7 +17,7 @@ def statement(name: str, **fragments: str) -> str:
     Errors: `KeyError` if a fragment of the file is not given.
     """
     part, _, file = name.rpartition("/")
-    return _FRAGMENT.sub(lambda found: fragments[found[1]], statement_texts(part)[file])
+    return _FRAGMENT.sub(lambda match: fragments[match[1]], statement_texts(part)[file])
 
 
 @cache

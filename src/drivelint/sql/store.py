@@ -126,23 +126,23 @@ _connection_id_by_cursor_id: dict[int, int] = {}
 @contextmanager
 def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a second connection to the database of `con`, which `interrupt` interrupts together with `con`."""
-    with con.cursor() as other:
+    with con.cursor() as child:
         root = _connection_id_by_cursor_id.get(id(con), id(con))
-        mine = _open_cursors_by_connection_id.setdefault(root, set())
-        mine.add(other)
-        _connection_id_by_cursor_id[id(other)] = root
+        cursors = _open_cursors_by_connection_id.setdefault(root, set())
+        cursors.add(child)
+        _connection_id_by_cursor_id[id(child)] = root
         try:
-            yield other
+            yield child
         finally:
-            mine.discard(other)
-            del _connection_id_by_cursor_id[id(other)]
+            cursors.discard(child)
+            del _connection_id_by_cursor_id[id(child)]
 
 
 def interrupt(con: duckdb.DuckDBPyConnection) -> None:
     """Stop the statements that run on a connection and on its cursors; called from another thread."""
-    for each in (con, *_open_cursors_by_connection_id.get(id(con), ())):
+    for connection in (con, *_open_cursors_by_connection_id.get(id(con), ())):
         with suppress(duckdb.ConnectionException):  # its thread has closed it meanwhile
-            each.interrupt()
+            connection.interrupt()
 
 
 def lock_down(con: duckdb.DuckDBPyConnection) -> None:
@@ -177,9 +177,9 @@ def set_and_return_default_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     """Set a database's memory limit to DuckDB's default, 80 % of the machine's memory, and return the limit."""
     con.execute("RESET memory_limit")
     # RESET changes only the value of the setting; SET also informs the buffer manager
-    (most,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
-    con.execute("SET memory_limit=?", [most])
-    return str(most)
+    (limit,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
+    con.execute("SET memory_limit=?", [limit])
+    return str(limit)
 
 
 def release_memory_and_leave_limit_of_1_byte(con: duckdb.DuckDBPyConnection) -> None:
@@ -248,11 +248,11 @@ def table_with_owner_id(
     """
     import pyarrow as pa
 
-    first, *others = arrow_schemas()[name]
+    first, *fields = arrow_schemas()[name]
     columns = {
-        f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in others
+        f.name: content[f.name] if isinstance(content, dict) else [row[f.name] for row in content] for f in fields
     }
-    table = pa.table(columns, schema=pa.schema(others))
+    table = pa.table(columns, schema=pa.schema(fields))
     words.refuse_wrong_words(table, word_columns()[name], f"reader {reader}: table {name}")
     return table.add_column(0, first, pa.repeat(pa.scalar(owner_id), table.num_rows))
 
@@ -269,9 +269,9 @@ def recreate_with_enums(
     for kind, ids in (("drive", drives), ("actor", actors)):
         names = sorted(set(ids))
         can_be_enum = names and not any("\0" in name for name in names)  # SQL text cannot contain NUL
-        made = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
+        kind_of_ids = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
         # an interrupted or failed call may have left one of the two types
-        con.execute(f"CREATE OR REPLACE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
+        con.execute(f"CREATE OR REPLACE TYPE {kind}_ids_{max(old, default=0) + 1} AS {kind_of_ids}")
     _recreate_empty(con, tables, _id_types(max(old, default=0) + 1))
     for no in old:
         con.execute(f"DROP TYPE IF EXISTS drive_ids_{no}; DROP TYPE actor_ids_{no}")
@@ -286,14 +286,14 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
 
 
 def _recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str], types: Mapping[str, str]) -> None:
-    made: list[str] = []
+    statements: list[str] = []
     for table in tables:
         body = column_lists()[table]
         for column in types.keys() & column_comments()[table].keys() if _has_enums(table) else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
-        made.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
-    if made:
-        con.execute(";".join(made))
+        statements.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
+    if statements:
+        con.execute(";".join(statements))
 
 
 def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, types: Mapping[str, str]) -> int:
@@ -309,14 +309,14 @@ def create_from_select(con: duckdb.DuckDBPyConnection, table: str, select: str, 
     values = dict(zip(kinds, kinds, strict=True))
     required = [column for column, kind in declared.items() if kind.endswith(" NOT NULL")]
     if required:
-        told = " ".join(f"WHEN {column} IS NULL THEN {quoted(column)}" for column in required)
-        failure = f"error('NOT NULL constraint failed: {table}.' || CASE {told} END)"
+        cases = " ".join(f"WHEN {column} IS NULL THEN {quoted(column)}" for column in required)
+        failure = f"error('NOT NULL constraint failed: {table}.' || CASE {cases} END)"
         # in the outermost SELECT, which has the rows of the table only
         wrong = " OR ".join(f"{column} IS NULL" for column in required)
         values[required[0]] = f"CASE WHEN {wrong} THEN {failure} ELSE {required[0]} END"
     columns = ", ".join(f"({values[column]})::{kind} AS {column}" for column, kind in kinds.items())
-    made = con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()
-    return int(made[0][0])
+    rows = con.execute(f"CREATE OR REPLACE TABLE {table} AS SELECT {columns} FROM (\n{select}\n)").fetchall()
+    return int(rows[0][0])
 
 
 def id_types(con: duckdb.DuckDBPyConnection) -> dict[str, str]:

@@ -40,13 +40,13 @@ def with_values(sql: str, literals: Mapping[str, str]) -> str:
 
     A name such as `$x` within a comment or a string is not replaced: a value there could end the comment, and be executed.
     """
-    content, parts, done = sql.encode(), [], 0
+    content, parts, end = sql.encode(), [], 0
     for at, kind in duckdb.tokenize(sql):
-        found = _PARAMETER.match(content, at) if kind == duckdb.token_type.operator else None
-        if found and (name := found[1].decode()) in literals:
-            parts += [content[done:at], literals[name].encode()]
-            done = found.end()
-    return b"".join([*parts, content[done:]]).decode()
+        match = _PARAMETER.match(content, at) if kind == duckdb.token_type.operator else None
+        if match and (name := match[1].decode()) in literals:
+            parts += [content[end:at], literals[name].encode()]
+            end = match.end()
+    return b"".join([*parts, content[end:]]).decode()
 
 
 def syntax_tree(sql: str) -> Node:
@@ -117,20 +117,22 @@ def _tables_needed_by_query(node: Node, ctes: Mapping[str, Names], *, lateral: b
 
     `ctes`: CTE in scope -> the tables that it needs. `lateral`: the query is right of a join, so it may use columns of the left side.
     """
-    own = dict(ctes)
+    inner_ctes = dict(ctes)
     for entry in _cte_entries(node):
-        own[_lower_case(entry["key"])] = _tables_needed_by_query(entry["value"]["query"]["node"], own, lateral=lateral)
+        inner_ctes[_lower_case(entry["key"])] = _tables_needed_by_query(
+            entry["value"]["query"]["node"], inner_ctes, lateral=lateral
+        )
     match node["type"]:
         case "SELECT_NODE" if not _has_row_without_source_rows(node, lateral=lateral):
-            return _tables_needed_by_source(node["from_table"], own, lateral=lateral)
+            return _tables_needed_by_source(node["from_table"], inner_ctes, lateral=lateral)
         case "SET_OPERATION_NODE" if node["setop_type"].startswith("UNION"):
-            return _tables_needed_by_query(node["left"], own, lateral=lateral) & _tables_needed_by_query(
-                node["right"], own, lateral=lateral
+            return _tables_needed_by_query(node["left"], inner_ctes, lateral=lateral) & _tables_needed_by_query(
+                node["right"], inner_ctes, lateral=lateral
             )
         case "RECURSIVE_CTE_NODE":
-            first = _tables_needed_by_query(node["left"], own, lateral=lateral)
+            first = _tables_needed_by_query(node["left"], inner_ctes, lateral=lateral)
             return first & _tables_needed_by_query(
-                node["right"], own | {_lower_case(node["cte_name"]): first}, lateral=lateral
+                node["right"], inner_ctes | {_lower_case(node["cte_name"]): first}, lateral=lateral
             )
     return _NO_NAMES
 
@@ -158,13 +160,13 @@ def _has_row_without_source_rows(node: Node, *, lateral: bool) -> bool:
     items = node["select_list"]
     if node["aggregate_handling"] == "FORCE_AGGREGATES":
         # GROUP BY ALL makes groups if an item is a column of the source, and not an alias of another item
-        named = {_lower_case(item["alias"]) for item in items}
+        aliases = {_lower_case(item["alias"]) for item in items}
         columns = (_lower_case(item["column_names"][-1]) for item in items if item["class"] == "COLUMN_REF")
-        return lateral or named.issuperset(columns)
+        return lateral or aliases.issuperset(columns)
     calls = {
-        _lower_case(each["function_name"])
-        for each, _ in walk([items, node["qualify"], node["modifiers"]])
-        if each.get("class") == "FUNCTION"
+        _lower_case(part["function_name"])
+        for part, _ in walk([items, node["qualify"], node["modifiers"]])
+        if part.get("class") == "FUNCTION"
     }
     return node["having"] is not None or any(
         name in _aggregate_function_names() or name.endswith("_agg") for name in calls
@@ -201,8 +203,8 @@ def _is_cte(table: Node, ctes: Container[str]) -> bool:
 
 
 def _cte_entries(node: Node) -> list[Node]:
-    found: list[Node] = node.get("cte_map", {}).get("map", [])
-    return found
+    entries: list[Node] = node.get("cte_map", {}).get("map", [])
+    return entries
 
 
 def _lower_case(name: str) -> str:
@@ -217,12 +219,12 @@ def _aggregate_function_names() -> Names:
     The aggregates of the spatial extension, whose names all end in `_agg`, are not included.
     """
     rows = parser().execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
-    found = {name for name, kind, _ in rows if kind == "aggregate"}
+    names = {name for name, kind, _ in rows if kind == "aggregate"}
     # drivelint's macros are read as text, in a tenth of the time of creating them in a database
-    own = [statement.query for statement in parser().extract_statements(macro_definitions())]
-    texts = [(match[1], text) for text in own if (match := _MACRO.search(text))]
+    queries = [statement.query for statement in parser().extract_statements(macro_definitions())]
+    texts = [(match[1], text) for text in queries if (match := _MACRO.search(text))]
     texts += [(name, text) for name, kind, text in rows if kind == "macro" and text]
     calls = [(name, set(_CALL.findall(text.lower()))) for name, text in texts]
-    while more := {name for name, called in calls if called & found} - found:
-        found |= more
-    return frozenset(found)
+    while more := {name for name, functions in calls if functions & names} - names:
+        names |= more
+    return frozenset(names)

@@ -61,17 +61,17 @@ def wrong_words_in_columns(table: str, relation: Relation) -> list[WrongWord]:
 
     The columns of a UNION, matched by position, have the names in its first query.
     """
-    known = declarations.word_columns()[table]
-    found = []
+    columns = declarations.word_columns()[table]
+    wrong = []
     for name, kind in relation.columns:
-        column = word_types.possible_words_of_column(known[name]) if name in known else None
+        column = word_types.possible_words_of_column(columns[name]) if name in columns else None
         if isinstance(column, PossibleWords) and isinstance(kind, PossibleWords):
-            found += [
+            wrong += [
                 WrongWord(word, place.offset, column)
                 for word, place in kind.literals.items()
                 if not column.may_be(word)
             ]
-    return found
+    return wrong
 
 
 def check_macro(name: str) -> list[WrongWord]:
@@ -98,11 +98,11 @@ def _relation_by_table() -> dict[str, Relation]:
 @cache
 def _possible_words_by_column() -> dict[str, WordType]:
     """Return column -> its possible values, for columns with the same values in every table that has them."""
-    found: dict[str, list[WordType]] = {}
+    kinds_by_name: dict[str, list[WordType]] = {}
     for columns in declarations.word_columns().values():
         for name, column in columns.items():
-            found.setdefault(name, []).append(word_types.possible_words_of_column(column))
-    return {name: kinds[0] for name, kinds in found.items() if all(kind == kinds[0] for kind in kinds)}
+            kinds_by_name.setdefault(name, []).append(word_types.possible_words_of_column(column))
+    return {name: kinds[0] for name, kinds in kinds_by_name.items() if all(kind == kinds[0] for kind in kinds)}
 
 
 class _Walker:
@@ -125,21 +125,21 @@ class _Walker:
     # ---- queries
 
     def relation_of_query(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
-        known = dict(ctes)
+        inner_ctes = dict(ctes)
         for entry in node.get("cte_map", {}).get("map", ()):
             value = entry["value"]
             name = entry["key"].lower()
-            known[name] = with_column_names(
-                self.relation_of_query(value["query"]["node"], known, outer), value.get("aliases", ())
+            inner_ctes[name] = with_column_names(
+                self.relation_of_query(value["query"]["node"], inner_ctes, outer), value.get("aliases", ())
             )
         match node["type"]:
             case "SELECT_NODE":
-                return self._relation_of_select(node, known, outer)
+                return self._relation_of_select(node, inner_ctes, outer)
             case "SET_OPERATION_NODE":
-                first, *others = (self.relation_of_query(part, known, outer) for part in syntax.union_queries(node))
-                return reduce(partial(union_of_relations, by_name="BY_NAME" in node["setop_type"]), others, first)
+                first, *rest = (self.relation_of_query(part, inner_ctes, outer) for part in syntax.union_queries(node))
+                return reduce(partial(union_of_relations, by_name="BY_NAME" in node["setop_type"]), rest, first)
             case "RECURSIVE_CTE_NODE":
-                return self._relation_of_recursive_cte(node, known, outer)
+                return self._relation_of_recursive_cte(node, inner_ctes, outer)
         return UNKNOWN
 
     def _relation_of_recursive_cte(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
@@ -185,10 +185,10 @@ class _Walker:
         """Return the columns that a `*` selects."""
         if item.get("columns") or item.get("expr"):
             return UNKNOWN
-        wanted = item.get("relation_name", "").lower()
-        sources = [source for source in scope.sources if not wanted or source.name == wanted]
-        if wanted and not sources:
-            kind = scope.lookup([wanted])
+        source_name = item.get("relation_name", "").lower()
+        sources = [source for source in scope.sources if not source_name or source.name == source_name]
+        if source_name and not sources:
+            kind = scope.lookup([source_name])
             return Relation(list(kind.fields.items())) if isinstance(kind, StructOf) else UNKNOWN
         dropped = {_excluded_column_name(name) for name in item.get("exclude_list") or ()}
         replaced = {
@@ -199,7 +199,7 @@ class _Walker:
             (name, replaced.get(name, kind))
             for source in sources
             for name, kind in source.relation.columns
-            if name not in dropped and (wanted or name not in source.hidden)
+            if name not in dropped and (source_name or name not in source.hidden)
         ]
         return Relation(columns, all(source.relation.complete for source in sources) and not item.get("rename_list"))
 
@@ -223,8 +223,8 @@ class _Walker:
             case "TABLE_FUNCTION":
                 call = node["function"]
                 kind = self.words_of(call, scope)
-                known = call["function_name"].lower() in {"unnest", "range", "generate_series"}
-                relation = Relation([(call["function_name"].lower(), as_indirect(kind))], complete=known)
+                is_list = call["function_name"].lower() in {"unnest", "range", "generate_series"}
+                relation = Relation([(call["function_name"].lower(), as_indirect(kind))], complete=is_list)
             case _:
                 relation = UNKNOWN
         return [Source(name, with_column_names(relation, node.get("column_name_alias", ())))]
@@ -279,10 +279,10 @@ class _Walker:
 
     def _case(self, node: Node, scope: Scope) -> WordType:
         checks = node["case_checks"]
-        for each in checks:
-            self.words_of(each["when_expr"], scope)
+        for check in checks:
+            self.words_of(check["when_expr"], scope)
         return union(
-            self.words_of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"])
+            self.words_of(part, scope) for part in (*(check["then_expr"] for check in checks), node["else_expr"])
         )
 
     def _cast(self, node: Node, scope: Scope) -> WordType:
@@ -346,19 +346,20 @@ class _Walker:
         self, name: str, kinds: Sequence[WordType] | None, call: Node | None = None
     ) -> WordType:
         """Return the possible values of a macro call. `kinds`: possible values of the arguments; None: any values."""
-        called = macro(name)
-        if called is None or (kinds is not None and len(kinds) != len(called.parameters)):
+        body = macro(name)
+        if body is None or (kinds is not None and len(kinds) != len(body.parameters)):
             return None
         if kinds is not None and all(kind is None for kind in kinds):
             return _possible_words_of_macro(name)
-        given = zip(called.parameters, kinds or [None] * len(called.parameters), strict=True)
+        arguments = zip(body.parameters, kinds or [None] * len(body.parameters), strict=True)
         bound = {
-            parameter: _possible_words_by_column().get(parameter) if kind is None else kind for parameter, kind in given
+            parameter: _possible_words_by_column().get(parameter) if kind is None else kind
+            for parameter, kind in arguments
         }
         if not self._depth:
             self._call = None if call is None else syntax.byte_offset_of(call)
         self._depth += 1
-        kind = self.words_of(called.value, Scope(bound=bound))
+        kind = self.words_of(body.value, Scope(bound=bound))
         self._depth -= 1
         return as_indirect(kind)
 
@@ -375,9 +376,9 @@ class _Walker:
         return first if node["subquery_type"] == "SCALAR" else None
 
     def _check_comparison(self, left: WordType, right: WordType) -> None:
-        for one, other in ((left, right), (right, left)):
-            if isinstance(one, Parameter) and isinstance(other, PossibleWords) and not other.direct:
-                self.parameters.setdefault(one.name, []).append(other)
+        for side, other_side in ((left, right), (right, left)):
+            if isinstance(side, Parameter) and isinstance(other_side, PossibleWords) and not other_side.direct:
+                self.parameters.setdefault(side.name, []).append(other_side)
         self._collect_wrong_words(word_types.wrong_words(left, right))
 
     def _collect_wrong_words(self, wrong_words: Iterable[WrongWord]) -> None:

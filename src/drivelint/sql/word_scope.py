@@ -81,9 +81,11 @@ def union_of_relations(left: Relation, right: Relation, *, by_name: bool) -> Rel
     if by_name:
         first, second = dict(left.columns), dict(right.columns)
         names = dict.fromkeys([*first, *second])
-        possible_words_by_column = {name: [each[name] for each in (first, second) if name in each] for name in names}
+        possible_words_by_column = {
+            name: [columns[name] for columns in (first, second) if name in columns] for name in names
+        }
         return Relation([(name, union(possible_words_by_column[name])) for name in names], complete)
     if not complete:
         return Relation([(name, None) for name, _ in left.columns], complete=False)
     pairs = zip(left.columns, right.columns, strict=False)
-    return Relation([(name, union([kind, other])) for (name, kind), (_, other) in pairs])
+    return Relation([(name, union([kind, other_kind])) for (name, kind), (_, other_kind) in pairs])

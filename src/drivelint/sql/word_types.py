@@ -44,7 +44,7 @@ class PossibleWords:
 
     def may_be(self, word: str) -> bool:
         """Return whether the text may be this word."""
-        return word in self.literals or any(word in known for known in self.vocabularies)
+        return word in self.literals or any(word in vocabulary for vocabulary in self.vocabularies)
 
     @property
     def is_null(self) -> bool:
@@ -55,7 +55,7 @@ class PossibleWords:
     def possible_words(self) -> tuple[str, ...]:
         """All words that the text may be."""
         ordered = sorted(self.vocabularies)
-        return tuple(dict.fromkeys([*(word for known in ordered for word in known.words), *self.literals]))
+        return tuple(dict.fromkeys([*(word for vocabulary in ordered for word in vocabulary.words), *self.literals]))
 
 
 @dataclass(frozen=True)
@@ -96,9 +96,9 @@ class WrongWord(NamedTuple):
     @property
     def message(self) -> str:
         """The error message, with the nearest valid word."""
-        names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
-        what = f"is no {names}" if names else "is never what it is compared with"
-        return f"{self.word!r} {what}; {nearest_word_hint(self.word.strip('%'), self.against.possible_words)}"
+        names = " or ".join(vocabulary.name.replace("_", " ") for vocabulary in sorted(self.against.vocabularies))
+        contradiction = f"is no {names}" if names else "is never what it is compared with"
+        return f"{self.word!r} {contradiction}; {nearest_word_hint(self.word.strip('%'), self.against.possible_words)}"
 
 
 def possible_words_of_column(column: WordColumn) -> WordType:
@@ -123,8 +123,8 @@ def union(kinds: Iterable[WordType]) -> WordType:
     structs = [part for part in parts if isinstance(part, StructOf)]
     if len(words) == len(parts):
         literals = {word: place for part in reversed(words) for word, place in part.literals.items()}
-        known = frozenset[ColumnVocabulary]().union(*(part.vocabularies for part in words))
-        return PossibleWords(known, literals, all(part.direct for part in words))
+        vocabularies = frozenset[ColumnVocabulary]().union(*(part.vocabularies for part in words))
+        return PossibleWords(vocabularies, literals, all(part.direct for part in words))
     if len(lists) == len(parts):
         return ListOf(union(part.item for part in lists))
     if len(structs) == len(parts):
@@ -137,13 +137,15 @@ def concatenation(parts: Iterable[WordType]) -> WordType:
     """Return all concatenations of the possible values of `parts`; None if unknown or too many."""
     texts: list[list[tuple[str, LiteralPlace]]] = []
     for part in parts:
-        if not isinstance(part, PossibleWords) or not all(known.has_all_words for known in part.vocabularies):
+        if not isinstance(part, PossibleWords) or not all(vocabulary.has_all_words for vocabulary in part.vocabularies):
             return None
         texts.append([(word, part.literals.get(word, LiteralPlace(None))) for word in part.possible_words])
     combinations = list(product(*texts)) if len(texts) < 4 else []
     if not 0 < len(combinations) <= _MOST_CONCATENATIONS:
         return None
-    return PossibleWords(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
+    return PossibleWords(
+        literals={"".join(word for word, _ in combination): combination[0][1] for combination in combinations}
+    )
 
 
 def possible_words_of_field(kind: WordType, names: Iterable[str]) -> WordType:
@@ -173,22 +175,22 @@ def wrong_words(left: WordType, right: WordType) -> Iterator[WrongWord]:
     A literal within a macro may only contradict a vocabulary, not other literals: the arguments of one call may have fewer values than
     the macro supports. Indirect literals, as from a CASE in a CTE, are wrong only if all of them are: some may mean "none of these".
     """
-    for literals, other in ((left, right), (right, left)):
-        if not (isinstance(literals, PossibleWords) and isinstance(other, PossibleWords)) or literals.vocabularies:
+    for literals, other_side in ((left, right), (right, left)):
+        if not (isinstance(literals, PossibleWords) and isinstance(other_side, PossibleWords)) or literals.vocabularies:
             continue
-        if other.direct or not (literals.direct or other.vocabularies):
+        if other_side.direct or not (literals.direct or other_side.vocabularies):
             continue
         wrong = [
-            WrongWord(word, place.offset, other)
+            WrongWord(word, place.offset, other_side)
             for word, place in literals.literals.items()
-            if (other.vocabularies or (other.literals and not place.in_macro)) and not other.may_be(word)
+            if (other_side.vocabularies or (other_side.literals and not place.in_macro)) and not other_side.may_be(word)
         ]
         if literals.direct or len(wrong) == len(literals.literals):
             yield from wrong
 
 
 def _is_like(word: str, pattern: str) -> bool:
-    parts = (".*" if each == "%" else "." if each == "_" else re.escape(each) for each in pattern)
+    parts = (".*" if letter == "%" else "." if letter == "_" else re.escape(letter) for letter in pattern)
     return re.fullmatch("".join(parts), word, re.DOTALL) is not None
 
 
@@ -208,10 +210,10 @@ def wrong_patterns(function: str, text: WordType, pattern: WordType) -> Iterator
         isinstance(text, PossibleWords) and isinstance(pattern, PossibleWords) and pattern.direct
     ):
         return
-    if text.direct or text.is_null or not all(known.has_all_words for known in text.vocabularies):
+    if text.direct or text.is_null or not all(vocabulary.has_all_words for vocabulary in text.vocabularies):
         return
-    for wanted, place in pattern.literals.items():
+    for text_pattern, place in pattern.literals.items():
         if not place.in_macro and not any(
-            _PATTERN_TEST_BY_FUNCTION[function](word, wanted) for word in text.possible_words
+            _PATTERN_TEST_BY_FUNCTION[function](word, text_pattern) for word in text.possible_words
         ):
-            yield WrongWord(wanted, place.offset, text)
+            yield WrongWord(text_pattern, place.offset, text)

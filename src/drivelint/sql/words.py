@@ -62,7 +62,7 @@ class ColumnVocabulary(NamedTuple):
         """Return a word as the vocabulary spells it, ignoring case; None if the vocabulary lacks it."""
         if word in self.words:
             return word
-        return next((known for known in self.words if known.casefold() == word.casefold()), None)
+        return next((spelling for spelling in self.words if spelling.casefold() == word.casefold()), None)
 
     def problem(self, word: str) -> str | None:
         """Return an error message for an invalid word, with the nearest valid word; None for a valid word."""
@@ -112,9 +112,9 @@ def word_column(kind: str, comment: str) -> WordColumn | None:
     field, name, more = mark.groups()
     if name not in vocabularies():
         raise DriveLintError(f"schemas: there is no vocabulary [{name}] in words.toml; {hint(name, vocabularies())}")
-    known = vocabularies()[name]
+    vocabulary = vocabularies()[name]
     besides = tuple(more.split(" + ")[1:])
-    return WordColumn(known._replace(words=known.words + besides), field or "", "[]" in kind)
+    return WordColumn(vocabulary._replace(words=vocabulary.words + besides), field or "", "[]" in kind)
 
 
 def readable_comment(comment: str) -> str:
@@ -122,8 +122,8 @@ def readable_comment(comment: str) -> str:
     column = word_column("", comment)
     if column is None:
         return comment
-    known = column.vocabulary.words
-    listed = ", ".join(known) if len(known) <= _MOST_LISTED_WORDS else f"a word of {column.vocabulary.name}"
+    words = column.vocabulary.words
+    listed = ", ".join(words) if len(words) <= _MOST_LISTED_WORDS else f"a word of {column.vocabulary.name}"
     if not column.vocabulary.has_all_words:
         listed += ", ..."
     rest = VOCABULARY_MARK.sub("", comment, count=1)

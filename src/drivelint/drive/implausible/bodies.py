@@ -108,9 +108,9 @@ def same_body_findings(states: States, actors: Actors, egos: Collection[str]) ->
             continue
         length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
-        kept, left = (states.ids[i] for i in order)
-        rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
-        pairs.append(f"{left} is the same body as {kept}")
+        name, second_name = (states.ids[i] for i in order)
+        rows[(rows_a if states.ids[a] == second_name else rows_b)[deep]] = True
+        pairs.append(f"{second_name} is the same body as {name}")
     text = f"{name_list(pairs)}, in {{n}} of {{of}} states: the first of the two is not used" if pairs else ""
     findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
     text = "boxes of two actors overlap from their first sample, in {n} of {of} states ({ids}): their positions are not exact"
@@ -124,12 +124,12 @@ def false_track_start_findings(states: States, step: Steps) -> list[QualityFindi
     starts = track_starts(states.actor)
     ends = np.r_[starts[1:], n]
     with np.errstate(invalid="ignore", divide="ignore"):
-        moved = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
+        velocity = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
     for k in range(MOST_FALSE_TRACK_START_SAMPLES):
         first = starts[ends - starts > MOST_FALSE_TRACK_START_SAMPLES + 2] + k
-        change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
+        change = np.hypot(*(velocity[:, first] - velocity[:, first + 1]))
         hard = change > FALSE_TRACK_START_LEAST_CHANGE_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
-        faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
+        faster = np.hypot(*velocity[:, first]) > np.hypot(*velocity[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
     text = (
@@ -173,8 +173,8 @@ def repeated_end_position_findings(states: States, actors: Actors) -> list[Quali
         if not len(other_rows):
             continue
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
-        mine = _boxes_of_rows(states, half, np.full(len(other_rows), last))
-        depth = _overlaps_and_second_half_extents_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
+        last_boxes = _boxes_of_rows(states, half, np.full(len(other_rows), last))
+        depth = _overlaps_and_second_half_extents_m(last_boxes, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
         if (depth > LEAST_OVERLAP_AT_TRACK_BEGIN_M + MOST_LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_END_POSITIONS_NS
     text = (
@@ -197,15 +197,19 @@ def _pairs_close_at_start(states: States, actors: Actors) -> Iterator[tuple[int,
         # if both tracks start at this time, the pair is yielded only once
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
         first, second = first[once], second[once]  # noqa: PLW2901  only these pairs are used
-        mine, theirs = _boxes_of_rows(states, half, first), _boxes_of_rows(states, half, second)
+        first_boxes, second_boxes = _boxes_of_rows(states, half, first), _boxes_of_rows(states, half, second)
         coupled = (
-            may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _are_in_line(mine, theirs)
+            may_be_coupled[states.actor[first]]
+            & may_be_coupled[states.actor[second]]
+            & _are_in_line(first_boxes, second_boxes)
         )
         near = (
-            _overlap_deeply(mine, theirs)
-            | _are_persons_in_one_place(mine, theirs)
+            _overlap_deeply(first_boxes, second_boxes)
+            | _are_persons_in_one_place(first_boxes, second_boxes)
             | coupled
-            | (_overlaps_and_second_half_extents_m(mine, theirs)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(axis=0)
+            | (_overlaps_and_second_half_extents_m(first_boxes, second_boxes)[0] >= LEAST_OVERLAP_AT_TRACK_BEGIN_M).all(
+                axis=0
+            )
         )
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
@@ -242,8 +246,8 @@ def _rows_at_common_times(states: States, a: slice, b: slice) -> tuple[Indices, 
 def _half_sizes(states: States, actors: Actors) -> Floats:
     """Return half the length and half the width (2, n) of the actors in `states.ids`, in the same order."""
     index = {name: i for i, name in enumerate(actors.ids)}
-    who = [index[name] for name in states.ids]
-    half: Floats = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
+    places = [index[name] for name in states.ids]
+    half: Floats = np.stack([actors.sizes["length_m"][places], actors.sizes["width_m"][places]]) / 2.0
     return half
 
 
@@ -329,8 +333,8 @@ def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
     if across[0] <= MOST_SIDE_BY_SIDE_OVERLAP_SHARE * 2 * min(first.half_sizes[1][0], second.half_sizes[1][0]):
-        most = across[together].max() + LATERAL_OVERLAP_NOISE_M
-        near |= np.logical_and.accumulate((across <= most) & (across > -most))
+        farthest = across[together].max() + LATERAL_OVERLAP_NOISE_M
+        near |= np.logical_and.accumulate((across <= farthest) & (across > -farthest))
     return near & ~np.any(hit)
 
 

@@ -114,11 +114,11 @@ def _false_step_samples(states: States, step: Steps) -> Mask:
     If a later false step reverses one, the samples between them are included.
     """
     aside = np.zeros(len(states), np.bool_)
-    known = steps_with_known_motion(states, step)
-    off = np.where(known, np.diff(states.place) - integral_per_step(states.velocity, step, known), 0.0)
+    usable_steps = steps_with_known_motion(states, step)
+    off = np.where(usable_steps, np.diff(states.place) - integral_per_step(states.velocity, step, usable_steps), 0.0)
     size = np.hypot(*off)
-    way = np.where(known, np.hypot(*np.diff(states.place)), 0.0)
-    turn = np.where(known, np.hypot(*np.diff(states.velocity)) * step.dt_s / 2.0, 0.0)
+    way = np.where(usable_steps, np.hypot(*np.diff(states.place)), 0.0)
+    turn = np.where(usable_steps, np.hypot(*np.diff(states.velocity)) * step.dt_s / 2.0, 0.0)
     limit = LEAST_FALSE_STEP_M + LEAST_FALSE_STEP_SHARE * way + turn
     if not (size > limit).any():
         return aside
@@ -182,5 +182,5 @@ def _too_fast_samples(states: States, actors: Actors) -> Mask:
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     limits = np.array([FASTEST_SPEED_BY_CLASS_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
     over = np.hypot(*states.velocity) > limits[states.actor]
-    many = np.bincount(states.actor[over], minlength=len(states.ids)) >= LEAST_TOO_FAST_SAMPLES
-    return many[states.actor]
+    is_often = np.bincount(states.actor[over], minlength=len(states.ids)) >= LEAST_TOO_FAST_SAMPLES
+    return is_often[states.actor]

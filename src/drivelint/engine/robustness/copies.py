@@ -79,11 +79,11 @@ def _state_errors(drive: Drive, errors: MeasurementErrors, copy_numbers: Sequenc
         [_standard_normal_draws(copy_numbers, errors.seed, name) for name in actors.to_pylist()], axis=1
     )
     of_map = _standard_normal_draws(copy_numbers, errors.seed, None)[:, None, :]
-    own = np.array([errors.position_m, errors.position_m, errors.time_s])
+    sizes = np.array([errors.position_m, errors.position_m, errors.time_s])
     common = np.array([errors.map_m, errors.map_m, 0.0])
     actor = pc.index_in(tables["actor_state"]["actor_id"], value_set=actors).to_numpy(zero_copy_only=False)
-    found: Floats = (of_actor * own + of_map * common)[:, actor, :]
-    return found
+    errors_of_states: Floats = (of_actor * sizes + of_map * common)[:, actor, :]
+    return errors_of_states
 
 
 def _standard_normal_draws(copy_numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
@@ -97,17 +97,17 @@ def _standard_normal_draws(copy_numbers: Sequence[int], seed: int, actor: str | 
     ]
     # not scipy's ndtri: loading it takes longer than judging a rule
     quantiles = [_STANDARD_NORMAL.inv_cdf(share) for share in np.concatenate(blocks).ravel().tolist()]
-    drawn = np.concatenate([np.zeros((1, 3)), np.array(quantiles).reshape(-1, 3)])
-    return drawn[list(copy_numbers)]
+    draws = np.concatenate([np.zeros((1, 3)), np.array(quantiles).reshape(-1, 3)])
+    return draws[list(copy_numbers)]
 
 
 def _positions_of_copies(states: pa.Table, state_errors: Floats) -> dict[str, Floats]:
     """Return the positions of all copies, concatenated; an unknown velocity counts as 0."""
-    found = {}
+    places = {}
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         along = np.nan_to_num(floats(states[speed])) * state_errors[:, :, 2]
-        found[place] = (floats(states[place]) + state_errors[:, :, axis] + along).ravel()
-    return found
+        places[place] = (floats(states[place]) + state_errors[:, :, axis] + along).ravel()
+    return places
 
 
 def with_drive_id(trace: Trace, drive_id: str) -> Trace:
@@ -127,8 +127,8 @@ def crop(drive: Drive, from_ns: int, to_ns: int, actors: Collection[str] | None 
                 within, pc.is_in(tables[name]["actor_id"], value_set=pa.array(sorted(actors), pa.string()))
             )
         tables[name] = tables[name].filter(within)
-    seen = pc.unique(tables["actor_state"]["actor_id"])
-    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
+    actor_ids = pc.unique(tables["actor_state"]["actor_id"])
+    tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=actor_ids))
     span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
     about = {"t_start_ns": [span["min"]], "t_end_ns": [span["max"]], "n_states": [tables["actor_state"].num_rows]}
     tables["data_log"] = replace_columns(tables["data_log"], about)

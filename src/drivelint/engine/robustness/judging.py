@@ -98,8 +98,8 @@ class RobustnessJudge:
     def add(self, drives: Sequence[Drive]) -> None:
         """Keep the drives with findings, and judge their copies once there are enough: few copies cost nearly as much as many."""
         ids = [drive.trace.drive_id for drive in drives]
-        found = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
-        with_findings = set(pc.unique(found["drive_id"]).to_pylist())
+        findings = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
+        with_findings = set(pc.unique(findings["drive_id"]).to_pylist())
         self._waiting |= {name: drive for name, drive in zip(ids, drives, strict=True) if name in with_findings}
         if sum(drive.n_states for drive in self._waiting.values()) > MAX_BATCH_STATES:
             self.judge()
@@ -116,10 +116,10 @@ class RobustnessJudge:
         return len(questions) if self._of_all else len(gravest) + len(near)
 
     def _questions(self, drives: Iterable[str]) -> list[RobustnessQuestion]:
-        found = self._con.execute(statement("robustness/findings"), {"drives": list(drives)}).to_arrow_table()
+        findings = self._con.execute(statement("robustness/findings"), {"drives": list(drives)}).to_arrow_table()
         return [
             RobustnessQuestion(row, self._rules[row["rule_id"]], ends_early=not self._of_all)
-            for row in found.to_pylist()
+            for row in findings.to_pylist()
         ]
 
     def judge(self, advance: Callable[[int], None] | None = None) -> None:
@@ -133,7 +133,7 @@ class RobustnessJudge:
         self._advance = advance or (lambda _: None)
         questions = self._questions(by_id)
         set_extents(questions)  # of all findings, so that the windows do not depend on which of them are judged
-        gravest, near, others = worst_near_and_other_questions(questions)
+        gravest, near, rest = worst_near_and_other_questions(questions)
         most_states = MAX_BATCH_STATES
         if have_many_states(by_id.values()):
             self._memory.release_unused_memory()
@@ -141,7 +141,7 @@ class RobustnessJudge:
         self._judge_until_settled(by_id, questions if self._of_all else [*gravest, *near], most_states)
         doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_finding_certain}
         self._judge_until_settled(
-            by_id, [question for question in others if drive_ego_and_rule(question) in doubtful], most_states
+            by_id, [question for question in rest if drive_ego_and_rule(question) in doubtful], most_states
         )
         self._write_copy_counts([q for q in questions if q.n_copies and q.is_settled])
 
@@ -162,7 +162,7 @@ class RobustnessJudge:
         """Judge windows together; if that fails, judge them one by one, so that only the faulty window gets no result."""
         try:
             with store.uniform_memory_errors():
-                found = self._outcomes_by_window_and_question(chunk)
+                outcomes_by_window = self._outcomes_by_window_and_question(chunk)
         except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:
                 for window in chunk:
@@ -174,23 +174,23 @@ class RobustnessJudge:
             for question in chunk[0].questions:
                 question.restart_with_window_size(N_WINDOW_SIZES)
             return
-        for window, outcomes in zip(chunk, found, strict=True):
+        for window, outcomes in zip(chunk, outcomes_by_window, strict=True):
             for question in window.questions:
                 outcome = outcomes.get(id(question), OutcomeInCopies())
                 question.add_results_of_copies(window.numbers, outcome.margins, outcome.passes)
 
     def _outcomes_by_window_and_question(self, chunk: Sequence[Window]) -> list[dict[int, OutcomeInCopies]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""
-        made = [
+        ids_and_drives = [
             copies(window.part_with_suffix(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)
         ]
-        asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
-        rules = {question.rule.id: question.rule for _, question in asked}
+        questions = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
+        rules = {question.rule.id: question.rule for _, question in questions}
         reads = {table for rule in rules.values() for table in rule.reads}
         with store.one_thread(self._con), ExitStack() as undo:
-            undo.callback(self._forget, [name for ids, _ in made for name in ids])
-            self._load([many for _, many in made])
-            for name, rows in _copy_and_question_rows(chunk, [ids for ids, _ in made]).items():
+            undo.callback(self._forget, [name for ids, _ in ids_and_drives for name in ids])
+            self._load([drives for _, drives in ids_and_drives])
+            for name, rows in _copy_and_question_rows(chunk, [ids for ids, _ in ids_and_drives]).items():
                 self._con.register(name, pa.Table.from_pylist(rows, schema=_schema_of_columns(rows[0])))
                 undo.callback(self._con.unregister, name)
             self._con.execute(statement("robustness/capability"))
@@ -201,24 +201,24 @@ class RobustnessJudge:
                 always_needed_tables=_TABLES_READ_BY_EVALUATION,
                 filled_tables=_TABLES_COPIED_FROM_DRIVE,
             )
-            judged = [rules[name] for name in sorted(rules)]
-            params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
-            evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
+            ordered_rules = [rules[name] for name in sorted(rules)]
+            params = {r.id: self._params[r.id] for r in ordered_rules if r.id in self._params}
+            evaluate(self._con, ordered_rules, params, may_retry=True, limits=self._limits)
             erred = "SELECT rule_id FROM verdict v SEMI JOIN _copy c ON v.drive_id = c.copy_id WHERE verdict = 'error' LIMIT 1"
             if len(chunk) > 1 and (row := self._con.execute(erred).fetchone()):
                 raise RuleError(f"{row[0]} failed on copies of {len(chunk)} windows")
             stays = self._con.execute(
                 statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_POINT_TOLERANCE_NS}
             ).fetchall()
-        found: list[dict[int, OutcomeInCopies]] = [{} for _ in chunk]
+        outcomes_by_window: list[dict[int, OutcomeInCopies]] = [{} for _ in chunk]
         for finding_no, copy_no, keeps, margin in stays:
-            no, question = asked[finding_no]
-            outcome = found[no].setdefault(id(question), OutcomeInCopies())
+            no, question = questions[finding_no]
+            outcome = outcomes_by_window[no].setdefault(id(question), OutcomeInCopies())
             if keeps:
                 outcome.margins[copy_no] = margin
             else:
                 outcome.passes.add(copy_no)
-        return found
+        return outcomes_by_window
 
     def _write_copy_counts(self, questions: Sequence[RobustnessQuestion]) -> None:
         if not questions:
@@ -238,12 +238,14 @@ class RobustnessJudge:
 
 def _next_windows(drives: Mapping[str, Drive], questions: Sequence[RobustnessQuestion]) -> list[Window]:
     """Return the windows to judge next, with all copies at once if that costs less than another pass."""
-    found = windows_to_judge(drives, questions, N_COPIES_TO_SETTLE)
+    windows = windows_to_judge(drives, questions, N_COPIES_TO_SETTLE)
     more = sum(
-        window.n_states * (N_COPIES_TO_SETTLE[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1
+        window.n_states * (N_COPIES_TO_SETTLE[-1] // len(window.numbers))
+        for window in windows
+        if window.numbers[1] == 1
     )
     if more > MOST_STATES_FOR_ONE_PASS:
-        return found
+        return windows
     for question in questions:
         question.is_hasty = True
     return windows_to_judge(drives, questions, N_COPIES_TO_SETTLE)

@@ -72,34 +72,34 @@ class RobustnessQuestion:
     @property
     def next_copy_numbers(self) -> range:
         """The numbers of the copies to judge next."""
-        few, most = N_COPIES_TO_SETTLE
-        return range(self.n_copies + 1, (most if self.is_hasty or self.n_copies >= few else few) + 1)
+        least, largest = N_COPIES_TO_SETTLE
+        return range(self.n_copies + 1, (largest if self.is_hasty or self.n_copies >= least else least) + 1)
 
     @property
     def is_settled(self) -> bool:
         """Whether enough copies were judged."""
-        few, most = N_COPIES_TO_SETTLE
+        least, largest = N_COPIES_TO_SETTLE
         n_lost = self.n_copies - self.n_stays
-        if self.n_copies >= most or (self.ends_early and self._suffice_lost_copies(n_lost)):
+        if self.n_copies >= largest or (self.ends_early and self._suffice_lost_copies(n_lost)):
             return True
         if n_lost or self.is_near_threshold or self.is_doubtful:
             return False
-        return self.n_copies >= few and self._are_margins_far_from_zero_or_unknown
+        return self.n_copies >= least and self._are_margins_far_from_zero_or_unknown
 
     def _suffice_lost_copies(self, n_lost: int) -> bool:
         """Return whether so many copies lose the finding that it is only possible."""
-        few, most = N_COPIES_TO_SETTLE
-        if self.n_copies <= few and n_lost >= N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING:
+        least, largest = N_COPIES_TO_SETTLE
+        if self.n_copies <= least and n_lost >= N_LOST_OF_FEW_COPIES_FOR_POSSIBLE_FINDING:
             return True
-        return n_lost > (1.0 - LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) * most
+        return n_lost > (1.0 - LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING) * largest
 
     @property
     def _are_margins_far_from_zero_or_unknown(self) -> bool:
         """Whether the margins of the copies are far from 0; True if some are not known."""
-        known = [margin for margin in self.margins if margin is not None]
-        if len(known) < len(self.margins):
+        numbers = [margin for margin in self.margins if margin is not None]
+        if len(numbers) < len(self.margins):
             return True
-        return abs(float(np.mean(known))) >= FAR_FROM_ZERO_STANDARD_DEVIATIONS * float(np.std(known))
+        return abs(float(np.mean(numbers))) >= FAR_FROM_ZERO_STANDARD_DEVIATIONS * float(np.std(numbers))
 
     @property
     def is_finding_certain(self) -> bool:
@@ -179,9 +179,9 @@ def worst_near_and_other_questions(
     gravest: dict[tuple[str, ...], RobustnessQuestion] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(drive_ego_and_rule(question), question)
-    others = [question for question in questions if gravest[drive_ego_and_rule(question)] is not question]
+    rest = [question for question in questions if gravest[drive_ego_and_rule(question)] is not question]
     return (
         list(gravest.values()),
-        [q for q in others if q.is_near_threshold],
-        [q for q in others if not q.is_near_threshold],
+        [q for q in rest if q.is_near_threshold],
+        [q for q in rest if not q.is_near_threshold],
     )

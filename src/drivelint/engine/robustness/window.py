@@ -133,19 +133,19 @@ class Window:
         t_ns = states["t_ns"].to_numpy()
         rows = np.flatnonzero((t_ns >= extent.from_ns) & (t_ns <= extent.to_ns))
         t_ns, actors = t_ns[rows], states["actor_id"].take(rows)
-        own = pc.equal(actors, self.ego_id).to_numpy(zero_copy_only=False)
+        is_ego = pc.equal(actors, self.ego_id).to_numpy(zero_copy_only=False)
         near, beyond = np.ones(len(rows), dtype=bool), NEAR_ACTOR_M_BY_WINDOW_SIZE[extent.size]
         for axis in ("x_m", "y_m"):
             place = floats(states[axis])[rows]
-            known = np.flatnonzero(own & np.isfinite(place))
-            if len(known):
-                lowest, highest = place[known].min(), place[known].max()
+            at = np.flatnonzero(is_ego & np.isfinite(place))
+            if len(at):
+                lowest, highest = place[at].min(), place[at].max()
                 if extent.is_near_at_same_time:
-                    known = known[np.argsort(t_ns[known], kind="stable")]
-                    lowest = highest = np.interp(t_ns, t_ns[known], place[known])
+                    at = at[np.argsort(t_ns[at], kind="stable")]
+                    lowest = highest = np.interp(t_ns, t_ns[at], place[at])
                 near &= ~((place < lowest - beyond) | (place > highest + beyond))
-        found = set(pc.unique(actors.filter(pa.array(near))).to_pylist())
-        return found | extent.objects | {self.ego_id}
+        names = set(pc.unique(actors.filter(pa.array(near))).to_pylist())
+        return names | extent.objects | {self.ego_id}
 
 
 def windows_to_judge(
@@ -157,23 +157,24 @@ def windows_to_judge(
     ones. Each window also has copy 0.
     """
     set_extents([question for question in questions if question.extent is None])
-    found: dict[tuple[Any, ...], Window] = {}
+    windows: dict[tuple[Any, ...], Window] = {}
     for question in questions:
         drive_id, ego_id, extent = question.finding["drive_id"], question.finding["ego_id"], question.extent
         if extent is None:
             continue
         for numbers in _ranges_by_goal(question.next_copy_numbers, goals):
             key = (numbers.start, drive_id, ego_id, extent.size, extent.from_ns, extent.to_ns, numbers)
-            window = found.setdefault((*key, id(extent)), Window(drives[drive_id], ego_id, (0, *numbers), extent, []))
+            window = windows.setdefault((*key, id(extent)), Window(drives[drive_id], ego_id, (0, *numbers), extent, []))
             window.questions.append(question)
-    return [found[key] for key in sorted(found, key=lambda key: key[:-2])]
+    return [windows[key] for key in sorted(windows, key=lambda key: key[:-2])]
 
 
 def set_extents(questions: Sequence[FindingWithCopies]) -> None:
     """Set the extent of each finding; findings of one ego, of the same size and kind, share it if their windows overlap."""
     last: dict[tuple[object, ...], Extent] = {}
     for question in sorted(
-        questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], window_span_ns(each))
+        questions,
+        key=lambda question: (question.finding["drive_id"], question.finding["ego_id"], window_span_ns(question)),
     ):
         key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.is_about_overtakes)
         start, end = window_span_ns(question)
