@@ -45,7 +45,7 @@ def referring(defined: str, *references: str) -> Any:
 def test_limits_come_from_the_lane_then_the_road_type() -> None:
     types = (
         '<type s="0" type="town"><speed max="50" unit="km/h"/></type>'
-        '<type s="60" type="motorway"><speed max="no limit"/></type><type s="90" type="rural"/>'
+        '<type s="60" type="town"><speed max="no limit"/></type><type s="90" type="town"/>'
     )
     inside = WIDTH + '<speed sOffset="20" max="30" unit="mph"/><speed sOffset="40" max="undefined"/>'
     environment = load(road(lanes=section(0, lane(1), lane(-1, inside)), more=types))
@@ -54,29 +54,6 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
     ]  # fmt: skip
     # the other lane is driven against the stations
     assert limits(environment, "1.0.1") == [(10, 40, None, "road_type"), (40, 100, 13.888889, "road_type")]
-
-
-@pytest.mark.parametrize(
-    ("types", "road_type", "varies"),
-    [
-        ("town", "town", False),
-        ("town town", "town", False),
-        ("town motorway", None, True),
-        ("unknown motorway", None, True),
-        ("unknown", None, False),
-    ],
-)
-def test_a_road_whose_type_changes_along_a_lane_has_none(types: str, road_type: str | None, varies: bool) -> None:
-    more = "".join(f'<type s="{90 * k}" type="{kind}"/>' for k, kind in enumerate(types.split()))
-    environment = load(road(lanes=section(0, lane(-1)), more=more))
-    assert lanelets(environment)["1.0.-1"]["road_type"] == road_type
-    assert checks(environment).get("road_type_varies", []) == ["1.0.-1"] * varies
-
-
-def test_a_road_type_that_ends_within_a_metre_of_a_lane_does_not_count() -> None:
-    environment = load(road(lanes=section(0, lane(-1)), more='<type s="0" type="town"/><type s="0.9" type="rural"/>'))
-    assert lanelets(environment)["1.0.-1"]["road_type"] == "rural"
-    assert "road_type_varies" not in checks(environment)
 
 
 @pytest.mark.parametrize(

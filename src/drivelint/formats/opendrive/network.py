@@ -9,6 +9,7 @@ import numpy as np
 
 from drivelint.formats.opendrive.access import lane_type_and_unread
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
+from drivelint.formats.opendrive.roadtypes import divide_at_road_types, road_types
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
 from drivelint.road.countries import only_nation
 from drivelint.road.geo_reference import GeoFrame
@@ -77,13 +78,17 @@ class Lane:
 
 @dataclass(frozen=True, eq=False)
 class LaneSection:
-    """Lanes that begin and end together: a lane section, or one side of it if the two sides are divided differently."""
+    """Lanes that begin and end together, on one type of road: a lane section or a part of it.
+
+    A part is one side of a section whose sides are divided differently, or the part on one type of road.
+    """
 
     section: int
     start_m: float
     end_m: float
     lanes: tuple[Lane, ...]  # ascending by number, lane 0 left out
     centre_marks: tuple[RoadMark, ...]
+    road_type: str | None = None  # None: the file does not state it
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,6 @@ class Road:
     junction_id: str | None
     rule: str | None  # lht, rht
     links: dict[str, RoadLink]  # start or end of this road -> link
-    types: tuple[tuple[float, str], ...]  # (from station, type)
     speeds: tuple[SpeedLimit, ...]
     plan: PlanView
     elevation: Cubics
@@ -196,9 +200,6 @@ def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQ
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = [
-        (number_attribute(t, "s", 0.0), _road_type(t.get("type", "unknown"), quality)) for t in element.findall("type")
-    ]
     return Road(
         road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
@@ -206,12 +207,13 @@ def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQ
         junction_id=None if junction in {"-1", ""} else junction,
         rule=rule if rule in {"lht", "rht"} else None,
         links=_road_links(element),
-        types=tuple(sorted(types, key=lambda t: t[0])),
         speeds=_speed_limits(element.findall("type"), "s", 0.0, quality, child="speed"),
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
         offset=cubics(element.findall("lanes/laneOffset"), "s"),
-        lane_sections=_lane_sections(element, min(length, plan.end), quality),
+        lane_sections=divide_at_road_types(
+            _lane_sections(element, min(length, plan.end), quality), road_types(element, quality)
+        ),
         element=element,
     )
 
@@ -280,10 +282,6 @@ def _has_numbers_of_other_side(section: etree._Element) -> bool:
         [integer_attribute(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right")
     )
     return bool(left) != bool(right) and all(no < 0 for no in left) and all(no > 0 for no in right)
-
-
-def _road_type(word: str, quality: MapQuality) -> str:
-    return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
 
 
 def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:

@@ -9,7 +9,7 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture_rows
-from drivelint.formats.opendrive.lanelet import boundary_rows, has_several_road_types, recorded_limit_rows, road_type
+from drivelint.formats.opendrive.lanelet import boundary_rows, recorded_limit_rows
 from drivelint.formats.opendrive.lanes import build_lanelets
 from drivelint.formats.opendrive.links import lanelet_links
 from drivelint.formats.opendrive.network import DYNAMIC_DIRECTION, DYNAMIC_TYPE, road_network
@@ -81,9 +81,6 @@ def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None
         if DYNAMIC_DIRECTION in lane.lane.varies:
             message = "its direction may change (dynamicLaneDirection): which one holds is not known"
             quality.add("lane_direction_varies", "warning", lane.lanelet_id, message)
-        if lane.drivable and has_several_road_types(lane):
-            message = "the type of its road changes along it: the kind of road is treated as not stated"
-            quality.add("road_type_varies", "warning", lane.lanelet_id, message)
 
 
 def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality) -> tuple[DrivingDirection, BuiltLanes]:
@@ -116,7 +113,7 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
         "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.lane_section.section,
         "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
         "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
-        "road_type": road_type(lane),
+        "road_type": lane.lane_section.road_type,
         "length_m": lane.line.length, "width_m": lane.mean_width_m(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _is_driven_other_way(lane, lane.left),
