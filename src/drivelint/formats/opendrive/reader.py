@@ -14,12 +14,15 @@ from drivelint.formats.opendrive.lanes import build_lanelets
 from drivelint.formats.opendrive.links import lanelet_links
 from drivelint.formats.opendrive.network import DYNAMIC_DIRECTION, DYNAMIC_TYPE, road_network
 from drivelint.formats.opendrive.signlimits import speed_limit_rows
+from drivelint.phrases import escape_invisible
 from drivelint.road.boundary_lanes import lane_point_columns
 from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
 
 if TYPE_CHECKING:
+    from lxml import etree
+
     from drivelint.formats.opendrive.direction import DrivingDirection
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.lanes import BuiltLanes
@@ -29,9 +32,11 @@ if TYPE_CHECKING:
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not XML, includes another file, or no lane can be built."""
     quality = MapQuality()
-    net = road_network(safe_xml.parse_map(source), quality)
+    root = safe_xml.parse_map(source)
+    _refuse_includes(root, source)
+    net = road_network(root, quality)
     direction, lanes = _direction_and_lanes(net, request, quality)
     if not lanes.built:
         first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
@@ -67,6 +72,17 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         nation=net.nation,
     )
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
+
+
+def _refuse_includes(root: etree._Element, source: MapSource) -> None:
+    """Raise `MapError` if a part of the map is in another file; what an application adds in `<userData>` is no part of it."""
+    for element in root.iter("include"):
+        if not any(parent.tag == "userData" for parent in element.iterancestors()):
+            file = escape_invisible(element.get("file", "without a name")[:200])
+            raise MapError(
+                f"map {source.name} includes another file in line {element.sourceline}, which is not read ({file}): "
+                "replace <include> by the content of that file"
+            )
 
 
 def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None:

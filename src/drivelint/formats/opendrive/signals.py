@@ -184,8 +184,8 @@ class _SignalReader:
 
 def _kind(signal: etree._Element) -> str | None:
     """Return the kind of a signal: by its semantics, else by its code, else by its name."""
-    by_code = signal_kind(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
-    return kind_by_semantics(signal) or by_code
+    country, code, subtype = (signal.get(name, "") for name in ("country", "type", "subtype"))
+    return kind_by_semantics(signal) or signal_kind(country, code, signal.get("name", ""), subtype)
 
 
 def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -> tuple[float, float]:
