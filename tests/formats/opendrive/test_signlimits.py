@@ -66,7 +66,7 @@ def test_a_limit_ends_at_the_sign_that_ends_it_and_a_recorded_one_counts_instead
         ({"unit": "", "country": "OpenDRIVE"}, "its number has no known unit"),
         ({"unit": "", "value": "55"}, "its number has no known unit"),  # no German sign
         ({"unit": "kn"}, "its number has no known unit"),
-        ({"dynamic": "yes"}, "its number changes"),
+        ({"dynamic": "yes"}, "what it shows changes"),
     ],
 )
 def test_a_limit_sign_that_cannot_be_read_gives_an_unread_limit(attributes: dict[str, str], cause: str) -> None:

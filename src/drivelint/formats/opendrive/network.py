@@ -194,6 +194,10 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQuality) -> Road:
     if element.get("id") in earlier_roads:
         raise MalformedError("another road has the same id")
+    if any(lanes.get("layer", "permanent") != "permanent" for lanes in element.findall("lanes")):
+        raise MalformedError(
+            "it has temporary lanes (a layer of OpenDRIVE 1.9), which are driven on first and are not read"
+        )
     length = number_attribute(element, "length")
     if not 0.0 < length <= MAX_ROAD_LENGTH_M:
         raise MalformedError(f"its length is {length:g} m")

@@ -89,7 +89,7 @@ def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None
     """Report the lanes of which the map states something that no column can have. The rules that need it are unknown there."""
     for lane in lanes:
         if lane.drivable and lane.lane.is_access_unread:
-            message = "its <access> keeps cars out at a place or in a way that is not read: who may use it is not known"
+            message = "its <access>, <rule> or roadworks keep cars out at a place or in a way that is not read: who may use it is not known"
             quality.add("access_unread", "warning", lane.lanelet_id, message)
         if DYNAMIC_TYPE in lane.lane.varies:
             message = "its type may change (dynamicLaneType): whether it is open to traffic is not known"

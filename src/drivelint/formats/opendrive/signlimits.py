@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from drivelint.formats.opendrive.network import SPEED_UNITS_MPS
+from drivelint.formats.opendrive.semantics import CHANGING_BOARD_TYPES
 from drivelint.phrases import escape_invisible
 from drivelint.road.signcodes import speed_without_unit_kmh
 
@@ -148,7 +149,9 @@ def _is_contradiction(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
 
 
 def _may_be_limit(row: Mapping[str, Any]) -> bool:
-    """Return whether a sign that was not recognised has a speed, and so may be a limit."""
+    """Return whether a sign that was not recognised has a speed, or is a board that may show one, and so may be a limit."""
+    if row["type"] in CHANGING_BOARD_TYPES:
+        return True
     return row["kind"] is None and row["value"] is not None and row["unit"] in SPEED_UNITS_MPS
 
 
@@ -159,8 +162,8 @@ def _sign_limit_mps(row: Mapping[str, Any]) -> float | None:
 
 def _cause_unread(row: Mapping[str, Any]) -> str | None:
     """Return why the limit on a sign cannot be read; None: it can."""
-    if row["dynamic"]:
-        return "its number changes"
+    if row["dynamic"] or row["type"] in CHANGING_BOARD_TYPES:
+        return "what it shows changes"
     if row["kind"] is None:
         return "its code is not known"
     if row["value"] is None:
