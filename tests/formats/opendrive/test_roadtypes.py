@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import pyarrow.compute as pc
 import pytest
 
+from drivelint.formats import load_map
+from drivelint.road.map_reader import MapSource
+from tests.cut_sections import with_sections_cut
 from tests.formats.maps import checks, lanelets, values
 from tests.formats.opendrive.signal_text import WIDTH, signal
-from tests.formats.opendrive.xodr import LINE, lane, load, road, section
+from tests.formats.opendrive.xodr import LINE, geometry, lane, load, road, section, xodr
 
 
 def typed(*types: tuple[float, str]) -> str:
@@ -120,3 +124,24 @@ def test_marks_limits_and_signs_are_those_of_the_undivided_lane() -> None:
     ]  # fmt: skip
     half = values(environment, "lane_point", "half_width_m", lanelet_id="1.1.-1", digits=3)
     assert (half[0], half[-1]) == (1.65, 1.9)
+
+
+def test_the_parts_are_those_of_a_section_that_is_cut_by_hand() -> None:
+    """On a bend whose lanes grow wider, with marks, limits, signs and objects."""
+    inside = (
+        '<width sOffset="0" a="3"/><width sOffset="20" a="3" b="0.01"/><roadMark sOffset="0" type="solid"/>'
+        '<roadMark sOffset="30" type="broken"/><speed sOffset="0" max="9"/><speed sOffset="60" max="8"/>'
+    )
+    zebra = '<object id="z" s="50" t="0" type="crosswalk" length="4" width="9"/>'
+    signs = signal(50, type="206") + signal(20, "-", type="274", value="30", unit="km/h", id="8")
+    more = f"{typed((0, 'rural'), (50, 'town'))}<signals>{signs}</signals><objects>{zebra}</objects>"
+    bend = geometry('<arc curvature="0.01"/>')
+    text = xodr(road(geometry=bend, lanes=section(0, lane(1), lane(-1, inside), lane(-2)), more=more))
+    divided, cut = (
+        load_map(MapSource("m.xodr", each.encode()), handedness="rht") for each in (text, with_sections_cut(text))
+    )
+    for name, table in divided.tables.items():
+        own = {"environment_id", "sha256"}.intersection(table.schema.names)  # they depend on the bytes of the text
+        expected, found = (tables[name].drop(own) for tables in (cut.tables, divided.tables))
+        assert found == expected, name
+    assert pc.count_distinct(divided.tables["lanelet"]["road_type"]).as_py() == 2
