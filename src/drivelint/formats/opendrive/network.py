@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.formats.opendrive.access import lane_type_and_unread
+from drivelint.formats.opendrive.junctions import END, START, connections, cross_paths
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
 from drivelint.formats.opendrive.roadtypes import divide_at_road_types, road_types
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
     from lxml import etree
 
     from drivelint.arrays import Floats
+    from drivelint.formats.opendrive.junctions import Connection, CrossPath
     from drivelint.road.quality import MapQuality
 
 MAX_ROAD_LENGTH_M = 1e6  # a longer road is a unit mistake, and would be millions of points
-START, END = "start", "end"
 DYNAMIC_TYPE, DYNAMIC_DIRECTION = "dynamicLaneType", "dynamicLaneDirection"
 
 # Types of lanes on which motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). Not
@@ -137,23 +138,13 @@ class Road:
         return x, y, np.arctan2(line.sin, line.cos)[back]
 
 
-@dataclass(frozen=True)
-class Connection:
-    """A connection in a junction: from lanes of the incoming road to lanes of the connecting road."""
-
-    junction_id: str
-    incoming: str
-    connecting: str
-    contact: str  # end of the connecting road that is entered
-    lanes: tuple[tuple[int, int], ...]
-
-
 @dataclass(frozen=True, eq=False)
 class Network:
     """The road network of a file."""
 
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
+    cross_paths: tuple[CrossPath, ...]
     geo: GeoFrame | None
     nation: str | None  # the only country of its roads and signals, as two letters; None: not known
 
@@ -173,7 +164,9 @@ def road_network(root: etree._Element, quality: MapQuality) -> Network:
             roads[road.road_id] = road
     said = [element.get("country") for element in root.iterfind("road/type")]
     said += [element.get("country") for element in root.iterfind("road/signals/signal")]
-    return Network(roads, tuple(_connections(root, quality)), _geo_frame(root, quality), only_nation(said))
+    return Network(
+        roads, tuple(connections(root, quality)), cross_paths(root), _geo_frame(root, quality), only_nation(said)
+    )
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
@@ -367,33 +360,3 @@ def _limit_mps(speed: etree._Element) -> float | None:
     except (MalformedError, KeyError):
         return None
     return limit if limit > 0.0 else None
-
-
-def _connections(root: etree._Element, quality: MapQuality) -> Iterable[Connection]:
-    for junction in root.findall("junction"):
-        name = junction.get("id", f"in line {junction.sourceline}")
-        if junction.get("type") == "virtual":
-            message = f"junction {name} is virtual: its links in the middle of roads are left out"
-            quality.add("virtual_junction", "warning", name, message)
-            continue
-        for element in junction.findall("connection"):
-            try:
-                yield _connection(name, element)
-            except MalformedError as error:
-                message = f"a connection of junction {name} is left out: {error}"
-                quality.add("invalid_connection", "error", name, message)
-
-
-def _connection(junction_id: str, element: etree._Element) -> Connection:
-    contact = required_attribute(element, "contactPoint")
-    if contact not in {START, END}:
-        raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
-    return Connection(
-        junction_id=junction_id,
-        incoming=required_attribute(element, "incomingRoad"),
-        connecting=element.get("connectingRoad") or required_attribute(element, "linkedRoad"),
-        contact=contact,
-        lanes=tuple(
-            (integer_attribute(link, "from"), integer_attribute(link, "to")) for link in element.findall("laneLink")
-        ),
-    )
