@@ -80,7 +80,7 @@ PLATE = signal(30, type="1042", id="8")
 
 
 @pytest.mark.parametrize(
-    ("signs", "named"),
+    ("signs", "conditional"),
     [
         (signal(30, type="276"), []),
         (signal(30, type="276") + PLATE, []),
@@ -90,9 +90,9 @@ PLATE = signal(30, type="1042", id="8")
         (signal(30, inside='<dependency id="8"/>', type="206") + PLATE, []),
     ],
 )
-def test_when_a_ban_with_a_plate_applies_is_not_known(signs: str, named: list[str]) -> None:
+def test_when_a_ban_with_a_plate_applies_is_not_known(signs: str, conditional: list[str]) -> None:
     environment = load(road(lanes=LANES, more=f"<signals>{signs}</signals>"))
-    assert checks(environment).get("sign_condition_unread", []) == named
+    assert checks(environment).get("sign_condition_unread", []) == conditional
     assert all(
         message == "signal 7 applies only as its plates state (semantics or dependency): when it applies is not known"
         for message in messages(environment, "sign_condition_unread")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from drivelint.formats.opendrive.placed import PlacedObject
+from drivelint.formats.opendrive.map_object import PlacedObject
 from drivelint.formats.opendrive.xml import MalformedError, number_attribute, required_attribute
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats.opendrive.crosspaths import cross_paths
-from drivelint.formats.opendrive.placed import PlacedObject
+from drivelint.formats.opendrive.map_object import PlacedObject
 from drivelint.formats.opendrive.signals import signal_and_stop_line_rows
 from drivelint.formats.opendrive.xml import MalformedError, number_attribute, required_attribute
 from drivelint.road.tables import Rows, crossing_row, stop_line_row

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,18 +10,19 @@ import numpy as np
 from drivelint.formats.opendrive.access import lane_type_and_unread
 from drivelint.formats.opendrive.junctions import END, START, connections, cross_paths
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
-from drivelint.formats.opendrive.roadtypes import divide_at_road_types, road_types
+from drivelint.formats.opendrive.roadtypes import road_types, type_stretches
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
 from drivelint.road.countries import only_nation
 from drivelint.road.geo_reference import GeoFrame
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from lxml import etree
 
     from drivelint.arrays import Floats
     from drivelint.formats.opendrive.junctions import Connection, CrossPath
+    from drivelint.formats.opendrive.roadtypes import RoadType
     from drivelint.road.quality import MapQuality
 
 MAX_ROAD_LENGTH_M = 1e6  # a longer road is a unit mistake, and would be millions of points
@@ -208,7 +209,7 @@ def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQ
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
         offset=cubics(element.findall("lanes/laneOffset"), "s"),
-        lane_sections=divide_at_road_types(
+        lane_sections=_divide_at_road_types(
             _lane_sections(element, min(length, plan.end), quality), road_types(element, quality)
         ),
         element=element,
@@ -259,6 +260,35 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
     mine = [s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other) is None]
     ends = [min(number_attribute(s, "s"), length) for s in mine[1:]] + [length]
     return dict(zip(mine, ends, strict=True))
+
+
+def _divide_at_road_types(sections: Sequence[LaneSection], types: Sequence[RoadType]) -> tuple[LaneSection, ...]:
+    """Return the lane sections in their order, each with the type of its road.
+
+    The first part of a divided section keeps its number, the others have numbers after the last section of the road. Lanes of one number
+    continue each other.
+    """
+    first_free = 1 + max((section.section for section in sections), default=-1)
+    # The two sides of a section may be divided into sections of their own: their parts share numbers.
+    number_by_part: dict[tuple[int, float], int] = {}
+    parts = []
+    for section in sections:
+        stretches = type_stretches(types, section.start_m, section.end_m)
+        for k, (kind, start, end) in enumerate(stretches):
+            number = section.section
+            if k > 0:
+                number = number_by_part.setdefault((section.section, start), first_free + len(number_by_part))
+            is_last = k == len(stretches) - 1
+            lanes = tuple(
+                replace(
+                    lane,
+                    predecessors=(lane.number,) if k > 0 else lane.predecessors,
+                    successors=lane.successors if is_last else (lane.number,),
+                )
+                for lane in section.lanes
+            )
+            parts.append(replace(section, section=number, start_m=start, end_m=end, lanes=lanes, road_type=kind))
+    return tuple(parts)
 
 
 def _lane_or_invalid_lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:

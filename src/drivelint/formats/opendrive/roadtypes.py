@@ -1,8 +1,7 @@
-"""Reads the types of a road, and divides its lane sections where its type changes: each lanelet has one type of road."""
+"""Reads the types of a road, and where they change: each lanelet has one type of road."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,6 @@ if TYPE_CHECKING:
 
     from lxml import etree
 
-    from drivelint.formats.opendrive.network import LaneSection
     from drivelint.road.quality import MapQuality
 
 _LEAST_TYPE_M = 1.0  # a shorter stretch of another road type is a matter of rounding
@@ -32,49 +30,20 @@ def road_types(road: etree._Element, quality: MapQuality) -> list[RoadType]:
     return sorted(types, key=lambda t: t[0])
 
 
-def divide_at_road_types(sections: Sequence[LaneSection], types: Sequence[RoadType]) -> tuple[LaneSection, ...]:
-    """Return the lane sections in their order, each with the type of its road.
-
-    The first part of a divided section keeps its number, the others have numbers after the last section of the road. Lanes of one number
-    continue each other.
-    """
-    first_free = 1 + max((section.section for section in sections), default=-1)
-    # The two sides of a section may be divided into sections of their own: their parts share numbers.
-    number_by_part: dict[tuple[int, float], int] = {}
-    parts = []
-    for section in sections:
-        stretches = _type_stretches(types, section.start_m, section.end_m)
-        for k, (kind, start, end) in enumerate(stretches):
-            number = section.section
-            if k > 0:
-                number = number_by_part.setdefault((section.section, start), first_free + len(number_by_part))
-            is_last = k == len(stretches) - 1
-            lanes = tuple(
-                replace(
-                    lane,
-                    predecessors=(lane.number,) if k > 0 else lane.predecessors,
-                    successors=lane.successors if is_last else (lane.number,),
-                )
-                for lane in section.lanes
-            )
-            parts.append(replace(section, section=number, start_m=start, end_m=end, lanes=lanes, road_type=kind))
-    return tuple(parts)
-
-
-def _type_stretches(types: Sequence[RoadType], start: float, end: float) -> list[TypeStretch]:
+def type_stretches(types: Sequence[RoadType], start: float, end: float) -> list[TypeStretch]:
     """Return the stretches of one type between two stations, without those that are too short to count."""
     spans = record_spans((s for s, _ in types), start, end)
-    stretches = _joined((types[i][1] if i >= 0 else None, a, b) for i, a, b in spans)
+    stretches = _join_equal_types((types[i][1] if i >= 0 else None, a, b) for i, a, b in spans)
     if not stretches:
         return [(None, start, end)]
     # A lane section may itself be shorter than the least stretch.
     least = min(_LEAST_TYPE_M, 0.5 * max(b - a for _, a, b in stretches))
-    kept = _joined(stretch for stretch in stretches if stretch[2] - stretch[1] > least)
+    kept = _join_equal_types(stretch for stretch in stretches if stretch[2] - stretch[1] > least)
     edges = [start, *(a for _, a, _ in kept[1:]), end]
     return [(kind, a, b) for (kind, _, _), (a, b) in zip(kept, pairwise(edges), strict=True)]
 
 
-def _joined(stretches: Iterable[TypeStretch]) -> list[TypeStretch]:
+def _join_equal_types(stretches: Iterable[TypeStretch]) -> list[TypeStretch]:
     """Return the stretches; those that follow each other with the same type are one."""
     joined: list[TypeStretch] = []
     for kind, a, b in stretches:
