@@ -1,5 +1,5 @@
 -- The road, in one format for all maps. The key is environment_id (map hash, offset and handedness): many drives share one map.
--- A lanelet is one lane of one lane section. Its points run in the direction of travel: left and right are as the driver sees them.
+-- A lanelet is one lane of one lane section, on one type of road. Its points run in the direction of travel: left and right are as the driver sees them.
 
 -- lifetime: run
 CREATE TABLE environment (
@@ -25,14 +25,14 @@ CREATE TABLE lanelet (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- id of the lanelet; from OpenDRIVE: road.section.lane
     road_id VARCHAR NOT NULL,         -- the road of the lanelet
-    section INTEGER NOT NULL,         -- index of the lane section along the road, from 0
+    section INTEGER NOT NULL,         -- number of the lane section, from 0 along the road; the later parts of a section that is divided where the type of its road changes have numbers after the last
     lane_no INTEGER NOT NULL,         -- lane number of OpenDRIVE (negative: right of the reference line)
     lane_type VARCHAR NOT NULL,       -- [lane_type]
     drivable BOOLEAN NOT NULL,        -- motor vehicles may drive here, by lane_type
     bidirectional BOOLEAN NOT NULL,   -- driven in both directions; its points run as those of a lane on the right of the reference line
     along_road INTEGER NOT NULL,      -- 1: the direction of travel is that of the road's reference line; -1: the opposite
     junction_id VARCHAR,              -- the junction in which this is a connecting lane; NULL: none
-    road_type VARCHAR,                -- [road_type] NULL: the map does not state it, or states several along the lanelet (road_type_varies in map_quality)
+    road_type VARCHAR,                -- [road_type] NULL: the map does not state it
     length_m DOUBLE NOT NULL,         -- length along the centre line
     width_m DOUBLE NOT NULL,          -- mean width
     area_m2 DOUBLE NOT NULL,          -- area between the bounds

@@ -28,6 +28,7 @@ from tests.clean.judging import renamed_drive
 from tests.clean.planted import PLANTED
 from tests.clean.roads import open_road
 from tests.clean.story import Story
+from tests.cut_sections import with_sections_cut
 from tests.demo import scene as sampling
 from tests.demo import scene_drive
 from tests.demo.scenes import all_scenes
@@ -243,6 +244,16 @@ def test_where_and_when_does_not_matter(move: Move, names: set[str], mirror: boo
     some = {name: cases()[name] for name in sorted(names)}
     changed = {name: move_case(mirrored(case) if mirror else case, move) for name, case in some.items()}
     same(*rows_before_and_after(some, changed), move.t_s)
+
+
+@pytest.mark.slow
+def test_lane_sections_cut_in_two_change_no_verdict() -> None:
+    """A map cuts its lanes as it likes: by lane sections, and the reader where the type of the road changes. Some of the cases."""
+    some = dict(list(cases().items())[::9])
+    cut = {name: case._replace(text=with_sections_cut(case.text)) for name, case in some.items()}
+    before, after = rows_before_and_after(some, cut)
+    assert {row["verdict"] for rows in before.values() for row in rows} == {"pass", "fail", "unknown", "not_applicable"}
+    same(before, after)
 
 
 def every_second_sample(case: Case) -> Case:

@@ -78,9 +78,11 @@ front_place AS (
     ) l
     JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id AND x.t_ns = l.t_ns
 ),
+map_with_unknown_codes AS (SELECT environment_id FROM environment WHERE NOT signs_mapped),
 lanelet_with_plate AS (SELECT DISTINCT environment_id, lanelet_id FROM map_quality WHERE check_id = 'sign_condition_unread'),
 -- The last sign or junction that the ego has passed. A sign applies until its end is signed, or until the next junction. If there is
--- neither, a sign may stand further back than the corridor extends, or before the map's beginning.
+-- neither, a sign may stand further back than the corridor extends, or before the map's beginning. A sign that was not recognised, in a map
+-- with signs of countries whose codes are not known, may forbid overtaking or end a ban, and so may a board that changes.
 last_sign_passed AS (
     SELECT w.drive_id, w.ego_id, w.occurrence, f.is_level, max({'s_m': w.s_m, 'holds': w.holds}).holds AS holds
     FROM (
@@ -89,7 +91,9 @@ last_sign_passed AS (
         FROM chain_lanelet w
         JOIN traffic_signal t ON t.environment_id = w.environment_id AND t.lanelet_id = w.lanelet_id
         LEFT JOIN lanelet_with_plate q ON q.environment_id = w.environment_id AND q.lanelet_id = w.lanelet_id
-        WHERE t.kind IN ('no_overtaking', 'no_overtaking_end')
+        LEFT JOIN map_with_unknown_codes u ON u.environment_id = w.environment_id
+        WHERE t.kind IN ('no_overtaking', 'no_overtaking_end') OR t.type IN ('vmsBoard', 'multiBoard')
+            OR (t.kind IS NULL AND NOT t.dynamic AND u.environment_id IS NOT NULL AND t.type NOT IN ('', '-1', 'none', 'staticBoard'))
         UNION ALL
         SELECT w.drive_id, w.ego_id, w.occurrence, w.s_start_m + w.length_m, false
         FROM chain_lanelet w

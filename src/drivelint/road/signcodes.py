@@ -11,6 +11,7 @@ from functools import cache
 from typing import Final
 
 from drivelint.facts import toml_beside
+from drivelint.road.countries import nation_of
 
 _NAMES_AND_ARROWS: Final = toml_beside(__file__, "signnames.toml")
 _KINDS_BY_NAME_PATTERN: Final = [(re.compile(pattern), kind) for kind, pattern in _NAMES_AND_ARROWS["names"].items()]
@@ -18,13 +19,15 @@ _ARROW_LIGHT_CODES: Final = frozenset({"1000010", "1000011", "1000012"})
 _CODE_WITH_DOTS: Final = re.compile(r"\d\.\d{3}\.\d{3}")
 
 
-def signal_kind(country: str, code: str, name: str) -> str | None:
-    """Return the kind of a signal by country (any case), code and name; None: not recognised."""
+def signal_kind(country: str, code: str, name: str, subtype: str = "") -> str | None:
+    """Return the kind of a signal by country (any case), code, subtype and name; None: not recognised."""
     codes = _kind_by_code(_NAMES_AND_ARROWS["countries"].get(country.lower(), ""))
     plain = _code_without_dots(code).upper()
     for candidate in (plain, plain.partition("-")[0] if plain[:1].isdecimal() else plain.replace("-", "")):
         if candidate in codes:
             return codes[candidate]
+    if _speeds_without_unit(country, code, subtype):
+        return "speed_limit"
     lowered = name.lower().replace(" ", "_").replace("-", "_")
     return next((kind for pattern, kind in _KINDS_BY_NAME_PATTERN if pattern.search(lowered)), None)
 
@@ -32,6 +35,18 @@ def signal_kind(country: str, code: str, name: str) -> str | None:
 def has_codes_of(country: str) -> bool:
     """Return whether the codes of a country (as maps write it, any case) are known."""
     return country.lower() in _NAMES_AND_ARROWS["countries"]
+
+
+def speed_without_unit_kmh(country: str, code: str, subtype: str, value: float) -> float | None:
+    """Return the speed (km/h) on a speed limit sign for which the map states a number but no unit; None: it may have another unit."""
+    return _speeds_without_unit(country, code, subtype).get(f"{value:g}")
+
+
+def _speeds_without_unit(country: str, code: str, subtype: str) -> dict[str, float]:
+    """Return number -> speed (km/h) of the speed limit signs of a code; none if it is another code."""
+    codes: dict[str, dict[str, float]] = _NAMES_AND_ARROWS["speeds_without_unit"].get(nation_of(country), {})
+    plain = _code_without_dots(code).lower().partition("-")[0]
+    return codes.get(plain) or codes.get(f"{plain}.{subtype.lower()}") or {}
 
 
 def signal_codes_by_list(kind: str) -> dict[str, list[str]]:

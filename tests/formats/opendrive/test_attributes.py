@@ -45,7 +45,7 @@ def referring(defined: str, *references: str) -> Any:
 def test_limits_come_from_the_lane_then_the_road_type() -> None:
     types = (
         '<type s="0" type="town"><speed max="50" unit="km/h"/></type>'
-        '<type s="60" type="motorway"><speed max="no limit"/></type><type s="90" type="rural"/>'
+        '<type s="60" type="town"><speed max="no limit"/></type><type s="90" type="town"/>'
     )
     inside = WIDTH + '<speed sOffset="20" max="30" unit="mph"/><speed sOffset="40" max="undefined"/>'
     environment = load(road(lanes=section(0, lane(1), lane(-1, inside)), more=types))
@@ -54,29 +54,6 @@ def test_limits_come_from_the_lane_then_the_road_type() -> None:
     ]  # fmt: skip
     # the other lane is driven against the stations
     assert limits(environment, "1.0.1") == [(10, 40, None, "road_type"), (40, 100, 13.888889, "road_type")]
-
-
-@pytest.mark.parametrize(
-    ("types", "road_type", "varies"),
-    [
-        ("town", "town", False),
-        ("town town", "town", False),
-        ("town motorway", None, True),
-        ("unknown motorway", None, True),
-        ("unknown", None, False),
-    ],
-)
-def test_a_road_whose_type_changes_along_a_lane_has_none(types: str, road_type: str | None, varies: bool) -> None:
-    more = "".join(f'<type s="{90 * k}" type="{kind}"/>' for k, kind in enumerate(types.split()))
-    environment = load(road(lanes=section(0, lane(-1)), more=more))
-    assert lanelets(environment)["1.0.-1"]["road_type"] == road_type
-    assert checks(environment).get("road_type_varies", []) == ["1.0.-1"] * varies
-
-
-def test_a_road_type_that_ends_within_a_metre_of_a_lane_does_not_count() -> None:
-    environment = load(road(lanes=section(0, lane(-1)), more='<type s="0" type="town"/><type s="0.9" type="rural"/>'))
-    assert lanelets(environment)["1.0.-1"]["road_type"] == "rural"
-    assert "road_type_varies" not in checks(environment)
 
 
 @pytest.mark.parametrize(
@@ -114,6 +91,10 @@ def test_a_lane_whose_type_or_direction_may_change_is_named(attributes: str, che
         # before OpenDRIVE 1.5, and a rule that the standard does not have
         ('<access restriction="bus"/>', "driving", True),
         ('<access rule="permit" restriction="bus"/>', "driving", True),
+        # OpenDRIVE 1.4 to 1.7: a free text, of which two keep nobody out
+        ('<rule value="No stopping at any time"/><rule value="disabled parking"/>', "driving", False),
+        ('<rule sOffset="20" value="car pool"/>', "driving", True),
+        ('<access rule="allow" restriction="bus"/><rule value="not on Sundays"/>', "bus", True),
         # cars of some kind alone
         ('<access rule="allow" restriction="autonomousTraffic"/>', "driving", True),
         ('<access rule="deny" restriction="throughTraffic"/>', "driving", True),
@@ -125,6 +106,21 @@ def test_who_may_use_a_lane(access: str, lane_type: str, unread: bool) -> None:
     assert [row["lanelet_id"] for row in rows(environment, "map_quality", check_id="access_unread")] == [
         "1.0.-1"
     ] * unread
+
+
+@pytest.mark.parametrize(("road_works", "unread"), [("true", True), ("1", True), ("false", False)])
+def test_whether_cars_may_use_a_lane_in_road_works_is_not_known(road_works: str, unread: bool) -> None:
+    environment = load(road(lanes=section(0, lane(-1, attributes=f'roadWorks="{road_works}"'))))
+    assert checks(environment).get("access_unread", []) == ["1.0.-1"] * unread
+
+
+@pytest.mark.parametrize(("layer", "is_left_out"), [("temporary", True), ("permanent", False)])
+def test_a_road_with_temporary_lanes_is_left_out(layer: str, is_left_out: bool) -> None:
+    """They lie on the other lanes (OpenDRIVE 1.9), and vehicles drive on them."""
+    lanes = f'{section(0, lane(-1))}</lanes><lanes layer="{layer}">{section(50, lane(-1, attributes=""))}'
+    environment = load(road(lanes=lanes), road("2", LINE.replace('y="0"', 'y="50"')))
+    assert ("1.0.-1" not in lanelets(environment)) == is_left_out
+    assert checks(environment).get("invalid_road", []) == ["1"] * is_left_out
 
 
 @pytest.mark.parametrize(

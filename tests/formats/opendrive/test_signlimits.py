@@ -9,6 +9,7 @@ import pytest
 from drivelint.formats import load_map, read_source
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
+from tests.formats.maps import messages
 from tests.formats.opendrive.signal_text import WIDTH, signal
 from tests.formats.opendrive.xodr import LINE, checks, lane, load, road, rows, section
 from tests.shared_data import shared
@@ -57,10 +58,53 @@ def test_a_limit_ends_at_the_sign_that_ends_it_and_a_recorded_one_counts_instead
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("attributes", [{"value": ""}, {"unit": ""}, {"dynamic": "yes"}])
-def test_a_limit_sign_that_cannot_be_read_gives_an_unread_limit(attributes: dict[str, str]) -> None:
+@pytest.mark.parametrize(
+    ("attributes", "cause"),
+    [
+        ({"value": ""}, "it has no number, or does not always apply"),
+        ({"unit": "", "country": ""}, "its number has no known unit"),
+        ({"unit": "", "country": "OpenDRIVE"}, "its number has no known unit"),
+        ({"unit": "", "value": "55"}, "its number has no known unit"),  # no German sign
+        ({"unit": "kn"}, "its number has no known unit"),
+        ({"dynamic": "yes"}, "what it shows changes"),
+    ],
+)
+def test_a_limit_sign_that_cannot_be_read_gives_an_unread_limit(attributes: dict[str, str], cause: str) -> None:
     environment = two_roads(signal(30, **{**FIFTY, **attributes}))
     assert limits(environment) == [("1.0.-1", 30.0, 100.0, None, "unread"), ("2.0.-1", 0.0, 100.0, None, "unread")]
+    (message,) = messages(environment, "limit_sign_unread")
+    assert f"the first, 7: {cause})" in message
+
+
+@pytest.mark.parametrize(
+    ("country", "code", "subtype", "value", "kmh"),
+    [
+        # the numbers of German signs are km/h: no sign shows their number in m/s
+        ("DE", "274", "-1", "50", 50.0),
+        ("deu", "274-50", "50", "50.0", 50.0),
+        ("de", "274.1", "-1", "30", 30.0),
+        # in esmini's catalogue, the value is the last part of the code: C31-5
+        ("se", "c", "31", "5", 50.0),
+        ("SE", "c", "31", "110", 110.0),
+        ("se", "c", "31", "10", None),  # 10 or 100 km/h
+        ("se", "c", "31", "1", None),
+    ],
+)
+def test_a_number_without_a_unit_is_read_where_the_code_leaves_only_one(
+    country: str, code: str, subtype: str, value: str, kmh: float | None
+) -> None:
+    environment = one_road(signal(30, country=country, type=code, subtype=subtype, value=value))
+    assert limits(environment)[1][3:] == (kmh, "unread" if kmh is None else "sign")
+    assert ("limit_sign_unread" in checks(environment)) == (kmh is None)
+    assert "signs_unmapped" not in checks(environment)
+
+
+def test_the_signs_of_a_map_of_esmini_state_the_limits_of_its_road() -> None:
+    """Swedish signs stand at 0 and 100 m and a German one at 200 m, all without a unit; the type of the road changes at 100 m."""
+    environment = load_map(read_source(shared("maps/straight_500m_signs.xodr")))
+    assert [row for row in limits(environment) if row[0].endswith("-1")] == [
+        ("1.0.-1", 0.0, 100.0, 50.0, "sign"), ("1.1.-1", 0.0, 100.0, 30.0, "sign"), ("1.1.-1", 100.0, 400.0, 50.0, "sign"),
+    ]  # fmt: skip
 
 
 def test_a_lane_limit_that_cannot_be_read_is_not_that_of_the_road() -> None:

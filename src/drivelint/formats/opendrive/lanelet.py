@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES, RoadMark
+from drivelint.formats.opendrive.records import record_spans
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 LaneKey = tuple[str, int, int]  # road, section, lane number
-_LEAST_TYPE_M = 1.0  # a shorter stretch of another road type at the end of a lanelet does not count
 
 
 def lanelet_id(key: LaneKey) -> str:
@@ -77,35 +76,15 @@ class Lanelet:
         return float(((half[:-1] + half[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0
 
 
-def road_type(lanelet: Lanelet) -> str | None:
-    """Return the road type of a lanelet; None if the map does not state it, or states another one for a part of the lanelet."""
-    types = _road_types(lanelet)
-    return types[0] if len(types) == 1 and types[0] != "unknown" else None
-
-
-def has_several_road_types(lanelet: Lanelet) -> bool:
-    """Return whether the map states different road types along a lanelet."""
-    return len(_road_types(lanelet)) > 1
-
-
-def _road_types(lanelet: Lanelet) -> list[str | None]:
-    road, section = lanelet.road, lanelet.lane_section
-    spans = _record_spans((s for s, _ in road.types), section.start_m, section.end_m)
-    types = [(road.types[i][1] if i >= 0 else None, b - a) for i, a, b in spans]
-    longest = max((length for _, length in types), default=0.0)
-    # A type that ends just after the lanelet begins is a matter of rounding; a lanelet may itself be that short.
-    return list(dict.fromkeys(kind for kind, length in types if length > min(_LEAST_TYPE_M, 0.5 * longest)))
-
-
 def recorded_limit_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `speed_limit`: the lane's own records, else those of the road type; no row where neither states a limit."""
     rows: Rows = []
     start, end = lanelet.lane_section.start_m, lanelet.lane_section.end_m
-    for i, a, b in _record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
+    for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].is_stated:
             rows += _rows_of_limit(lanelet, a, b, lanelet.lane.speeds[i], "lane")
             continue
-        for j, c, d in _record_spans((s.start_m for s in lanelet.road.speeds), a, b):
+        for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].is_stated:
                 rows += _rows_of_limit(lanelet, c, d, lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
@@ -143,7 +122,7 @@ _SWAPPED_MARKING = {"solid_broken": "broken_solid", "broken_solid": "solid_broke
 
 def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swaps_double_lines: bool) -> Rows:
     rows = []
-    spans = _record_spans((m.start_m for m in marks), lanelet.lane_section.start_m, lanelet.lane_section.end_m)
+    spans = record_spans((m.start_m for m in marks), lanelet.lane_section.start_m, lanelet.lane_section.end_m)
     for i, a, b in lanelet.lanelet_spans(spans):
         mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
         marking = _SWAPPED_MARKING.get(mark.marking or "", mark.marking) if swaps_double_lines else mark.marking
@@ -152,10 +131,3 @@ def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap
             "marking": marking, "color": mark.color, "lane_change": mark.lane_change,
         })  # fmt: skip
     return rows
-
-
-def _record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
-    """Return (record index, from, to) of the records that apply between two stations; index -1: before the first record."""
-    edges = [float("-inf"), *starts, float("inf")]
-    cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
-    return [(i, a, b) for i, a, b in cut if b - a > 1e-6]

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from drivelint.formats.opendrive.junctions import END, START
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
-from drivelint.formats.opendrive.network import END, START
 from drivelint.road.tree_parts import query_in_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from drivelint.formats.opendrive.junctions import Connection
     from drivelint.formats.opendrive.lanes import BuiltLanes
-    from drivelint.formats.opendrive.network import Connection, LaneSection, Network, Road
+    from drivelint.formats.opendrive.network import LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
 
 REPORTED_GAP_M = 0.5  # linked ends further apart than this are reported

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from drivelint.formats.opendrive.access import lane_type_and_unread
+from drivelint.formats.opendrive.junctions import END, START, connections, cross_paths
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
+from drivelint.formats.opendrive.roadtypes import road_types, type_stretches
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
 from drivelint.road.countries import only_nation
 from drivelint.road.geo_reference import GeoFrame
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from lxml import etree
 
     from drivelint.arrays import Floats
+    from drivelint.formats.opendrive.junctions import Connection, CrossPath
+    from drivelint.formats.opendrive.roadtypes import RoadType
     from drivelint.road.quality import MapQuality
 
 MAX_ROAD_LENGTH_M = 1e6  # a longer road is a unit mistake, and would be millions of points
-START, END = "start", "end"
 DYNAMIC_TYPE, DYNAMIC_DIRECTION = "dynamicLaneType", "dynamicLaneDirection"
 
 # Types of lanes on which motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). Not
@@ -77,13 +80,17 @@ class Lane:
 
 @dataclass(frozen=True, eq=False)
 class LaneSection:
-    """Lanes that begin and end together: a lane section, or one side of it if the two sides are divided differently."""
+    """Lanes that begin and end together, on one type of road: a lane section or a part of it.
+
+    A part is one side of a section whose sides are divided differently, or the part on one type of road.
+    """
 
     section: int
     start_m: float
     end_m: float
     lanes: tuple[Lane, ...]  # ascending by number, lane 0 left out
     centre_marks: tuple[RoadMark, ...]
+    road_type: str | None = None  # None: the file does not state it
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,6 @@ class Road:
     junction_id: str | None
     rule: str | None  # lht, rht
     links: dict[str, RoadLink]  # start or end of this road -> link
-    types: tuple[tuple[float, str], ...]  # (from station, type)
     speeds: tuple[SpeedLimit, ...]
     plan: PlanView
     elevation: Cubics
@@ -133,23 +139,13 @@ class Road:
         return x, y, np.arctan2(line.sin, line.cos)[back]
 
 
-@dataclass(frozen=True)
-class Connection:
-    """A connection in a junction: from lanes of the incoming road to lanes of the connecting road."""
-
-    junction_id: str
-    incoming: str
-    connecting: str
-    contact: str  # end of the connecting road that is entered
-    lanes: tuple[tuple[int, int], ...]
-
-
 @dataclass(frozen=True, eq=False)
 class Network:
     """The road network of a file."""
 
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
+    cross_paths: tuple[CrossPath, ...]
     geo: GeoFrame | None
     nation: str | None  # the only country of its roads and signals, as two letters; None: not known
 
@@ -169,7 +165,9 @@ def road_network(root: etree._Element, quality: MapQuality) -> Network:
             roads[road.road_id] = road
     said = [element.get("country") for element in root.iterfind("road/type")]
     said += [element.get("country") for element in root.iterfind("road/signals/signal")]
-    return Network(roads, tuple(_connections(root, quality)), _geo_frame(root, quality), only_nation(said))
+    return Network(
+        roads, tuple(connections(root, quality)), cross_paths(root), _geo_frame(root, quality), only_nation(said)
+    )
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
@@ -190,15 +188,16 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQuality) -> Road:
     if element.get("id") in earlier_roads:
         raise MalformedError("another road has the same id")
+    if any(lanes.get("layer", "permanent") != "permanent" for lanes in element.findall("lanes")):
+        raise MalformedError(
+            "it has temporary lanes (a layer of OpenDRIVE 1.9), which are driven on first and are not read"
+        )
     length = number_attribute(element, "length")
     if not 0.0 < length <= MAX_ROAD_LENGTH_M:
         raise MalformedError(f"its length is {length:g} m")
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = [
-        (number_attribute(t, "s", 0.0), _road_type(t.get("type", "unknown"), quality)) for t in element.findall("type")
-    ]
     return Road(
         road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
@@ -206,12 +205,13 @@ def _road(element: etree._Element, earlier_roads: dict[str, Road], quality: MapQ
         junction_id=None if junction in {"-1", ""} else junction,
         rule=rule if rule in {"lht", "rht"} else None,
         links=_road_links(element),
-        types=tuple(sorted(types, key=lambda t: t[0])),
         speeds=_speed_limits(element.findall("type"), "s", 0.0, quality, child="speed"),
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
         offset=cubics(element.findall("lanes/laneOffset"), "s"),
-        lane_sections=_lane_sections(element, min(length, plan.end), quality),
+        lane_sections=_divide_at_road_types(
+            _lane_sections(element, min(length, plan.end), quality), road_types(element, quality)
+        ),
         element=element,
     )
 
@@ -262,6 +262,35 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
     return dict(zip(mine, ends, strict=True))
 
 
+def _divide_at_road_types(sections: Sequence[LaneSection], types: Sequence[RoadType]) -> tuple[LaneSection, ...]:
+    """Return the lane sections in their order, each with the type of its road.
+
+    The first part of a divided section keeps its number, the others have numbers after the last section of the road. Lanes of one number
+    continue each other.
+    """
+    first_free = 1 + max((section.section for section in sections), default=-1)
+    # The two sides of a section may be divided into sections of their own: their parts share numbers.
+    number_by_part: dict[tuple[int, float], int] = {}
+    parts = []
+    for section in sections:
+        stretches = type_stretches(types, section.start_m, section.end_m)
+        for k, (kind, start, end) in enumerate(stretches):
+            number = section.section
+            if k > 0:
+                number = number_by_part.setdefault((section.section, start), first_free + len(number_by_part))
+            is_last = k == len(stretches) - 1
+            lanes = tuple(
+                replace(
+                    lane,
+                    predecessors=(lane.number,) if k > 0 else lane.predecessors,
+                    successors=lane.successors if is_last else (lane.number,),
+                )
+                for lane in section.lanes
+            )
+            parts.append(replace(section, section=number, start_m=start, end_m=end, lanes=lanes, road_type=kind))
+    return tuple(parts)
+
+
 def _lane_or_invalid_lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
     lane_no = integer_attribute(element, "id")
     kind = quality.known_word("lane_type", element.get("type", "none")) or "unknown"
@@ -280,10 +309,6 @@ def _has_numbers_of_other_side(section: etree._Element) -> bool:
         [integer_attribute(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right")
     )
     return bool(left) != bool(right) and all(no < 0 for no in left) and all(no > 0 for no in right)
-
-
-def _road_type(word: str, quality: MapQuality) -> str:
-    return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
 
 
 def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
@@ -365,33 +390,3 @@ def _limit_mps(speed: etree._Element) -> float | None:
     except (MalformedError, KeyError):
         return None
     return limit if limit > 0.0 else None
-
-
-def _connections(root: etree._Element, quality: MapQuality) -> Iterable[Connection]:
-    for junction in root.findall("junction"):
-        name = junction.get("id", f"in line {junction.sourceline}")
-        if junction.get("type") == "virtual":
-            message = f"junction {name} is virtual: its links in the middle of roads are left out"
-            quality.add("virtual_junction", "warning", name, message)
-            continue
-        for element in junction.findall("connection"):
-            try:
-                yield _connection(name, element)
-            except MalformedError as error:
-                message = f"a connection of junction {name} is left out: {error}"
-                quality.add("invalid_connection", "error", name, message)
-
-
-def _connection(junction_id: str, element: etree._Element) -> Connection:
-    contact = required_attribute(element, "contactPoint")
-    if contact not in {START, END}:
-        raise MalformedError(f"<connection> in line {element.sourceline}: contactPoint={contact!r}")
-    return Connection(
-        junction_id=junction_id,
-        incoming=required_attribute(element, "incomingRoad"),
-        connecting=element.get("connectingRoad") or required_attribute(element, "linkedRoad"),
-        contact=contact,
-        lanes=tuple(
-            (integer_attribute(link, "from"), integer_attribute(link, "to")) for link in element.findall("laneLink")
-        ),
-    )

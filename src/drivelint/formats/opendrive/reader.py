@@ -9,17 +9,20 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
 from drivelint.formats.opendrive.furniture import furniture_rows
-from drivelint.formats.opendrive.lanelet import boundary_rows, has_several_road_types, recorded_limit_rows, road_type
+from drivelint.formats.opendrive.lanelet import boundary_rows, recorded_limit_rows
 from drivelint.formats.opendrive.lanes import build_lanelets
 from drivelint.formats.opendrive.links import lanelet_links
 from drivelint.formats.opendrive.network import DYNAMIC_DIRECTION, DYNAMIC_TYPE, road_network
 from drivelint.formats.opendrive.signlimits import speed_limit_rows
+from drivelint.phrases import escape_invisible
 from drivelint.road.boundary_lanes import lane_point_columns
 from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
 
 if TYPE_CHECKING:
+    from lxml import etree
+
     from drivelint.formats.opendrive.direction import DrivingDirection
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.lanes import BuiltLanes
@@ -29,9 +32,11 @@ if TYPE_CHECKING:
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not XML, includes another file, or no lane can be built."""
     quality = MapQuality()
-    net = road_network(safe_xml.parse_map(source), quality)
+    root = safe_xml.parse_map(source)
+    _refuse_includes(root, source)
+    net = road_network(root, quality)
     direction, lanes = _direction_and_lanes(net, request, quality)
     if not lanes.built:
         first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
@@ -69,11 +74,22 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 
 
+def _refuse_includes(root: etree._Element, source: MapSource) -> None:
+    """Raise `MapError` if a part of the map is in another file; what an application adds in `<userData>` is no part of it."""
+    for element in root.iter("include"):
+        if not any(parent.tag == "userData" for parent in element.iterancestors()):
+            file = escape_invisible(element.get("file", "without a name")[:200])
+            raise MapError(
+                f"map {source.name} includes another file in line {element.sourceline}, which is not read ({file}): "
+                "replace <include> by the content of that file"
+            )
+
+
 def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None:
     """Report the lanes of which the map states something that no column can have. The rules that need it are unknown there."""
     for lane in lanes:
         if lane.drivable and lane.lane.is_access_unread:
-            message = "its <access> keeps cars out at a place or in a way that is not read: who may use it is not known"
+            message = "its <access>, <rule> or roadworks keep cars out at a place or in a way that is not read: who may use it is not known"
             quality.add("access_unread", "warning", lane.lanelet_id, message)
         if DYNAMIC_TYPE in lane.lane.varies:
             message = "its type may change (dynamicLaneType): whether it is open to traffic is not known"
@@ -81,9 +97,6 @@ def _report_unread_statements(lanes: list[Lanelet], quality: MapQuality) -> None
         if DYNAMIC_DIRECTION in lane.lane.varies:
             message = "its direction may change (dynamicLaneDirection): which one holds is not known"
             quality.add("lane_direction_varies", "warning", lane.lanelet_id, message)
-        if lane.drivable and has_several_road_types(lane):
-            message = "the type of its road changes along it: the kind of road is treated as not stated"
-            quality.add("road_type_varies", "warning", lane.lanelet_id, message)
 
 
 def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality) -> tuple[DrivingDirection, BuiltLanes]:
@@ -116,7 +129,7 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
         "lanelet_id": lane.lanelet_id, "road_id": lane.road.road_id, "section": lane.lane_section.section,
         "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
         "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
-        "road_type": road_type(lane),
+        "road_type": lane.lane_section.road_type,
         "length_m": lane.line.length, "width_m": lane.mean_width_m(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
         "left_against": _is_driven_other_way(lane, lane.left),

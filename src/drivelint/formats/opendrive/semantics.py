@@ -1,4 +1,4 @@
-"""Reads what a signal means from the `<semantics>` of OpenDRIVE 1.8, and which signs hold only at times or for some.
+"""Reads what a signal means from the `<semantics>` of OpenDRIVE 1.8, and which signs hold only at times, for some or not at all.
 
 A sign of a country whose codes are not known is recognised by its semantics.
 """
@@ -27,6 +27,20 @@ _KIND_BY_MEANING: Final = {
 _RESTRICTIONS: Final = frozenset({
     "supplementaryTime", "supplementaryAllows", "supplementaryProhibits", "supplementaryEnvironment",
 })  # fmt: skip
+
+CHANGING_BOARD_TYPES: Final = frozenset({"vmsBoard", "multiBoard"})
+"""The types of signals of OpenDRIVE 1.8 that are boards of which a part changes: it may show a limit or a ban at any time."""
+BOARD_TYPES: Final = CHANGING_BOARD_TYPES | {"staticBoard"}
+
+
+def signs_on_board(signal: etree._Element) -> list[etree._Element]:
+    """Return the signs on a static board (OpenDRIVE 1.8), each with the attributes of a signal; none if the signal is no board."""
+    return [sign for sign in signal.iterfind("staticBoard/sign") if not is_crossed_out(sign)]
+
+
+def is_crossed_out(signal: etree._Element) -> bool:
+    """Return whether a signal is there but does not apply, as in road works (OpenDRIVE 1.9)."""
+    return signal.get("invalidated") in {"true", "1"}
 
 
 def kind_by_semantics(signal: etree._Element) -> str | None:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from drivelint.formats.opendrive.semantics import element_with_value, kind_by_semantics, restricted_sign_ids
+from drivelint.formats.opendrive.semantics import (
+    BOARD_TYPES,
+    element_with_value,
+    is_crossed_out,
+    kind_by_semantics,
+    restricted_sign_ids,
+    signs_on_board,
+)
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute
 from drivelint.phrases import escape_invisible, name_list
 from drivelint.road.quality import SIGNS_UNMAPPED_CHECK
+from drivelint.road.sign_conditions import KINDS_WITH_UNREAD_CONDITIONS, add_unread_condition
 from drivelint.road.signcodes import has_codes_of, signal_kind, turns_of_light_code
 from drivelint.road.tables import Rows, stop_line_row
 
@@ -59,16 +67,23 @@ class _SignalReader:
             for road in net.roads.values()
             for signal in road.element.iterfind("signals/signal")
         }
-        kind_by_id = {name: _kind(signal) for name, (_, signal) in self.defined.items()}
-        self.restricted_ids = restricted_sign_ids((signal for _, signal in self.defined.values()), kind_by_id)
+        self.signs = [
+            sign
+            for _, signal in self.defined.values()
+            if not is_crossed_out(signal)
+            for sign in (signal, *signs_on_board(signal))
+        ]
+        self.restricted_ids = restricted_sign_ids(self.signs, {sign.get("id", ""): _kind(sign) for sign in self.signs})
         self.signals: Rows = []
         self.stop_lines: Rows = []
         self.contradictions: list[str] = []
 
     def read(self, road: Road, listing: etree._Element) -> None:
-        """Read a `<signal>`, or a `<signalReference>` to a signal that is defined elsewhere."""
+        """Read a `<signal>`, or a `<signalReference>` to a signal that is defined elsewhere; a crossed-out signal does not apply."""
         name = listing.get("id", "")
         home, signal = (road, listing) if listing.tag == "signal" else self.defined.get(name, (road, None))
+        if signal is not None and is_crossed_out(signal):
+            return
         try:
             self._add_signal(road, listing, home, signal)
         except MalformedError as error:
@@ -85,41 +100,49 @@ class _SignalReader:
             self.quality.add("signal_off_road", "warning", road.road_id, message)
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _contains_station(lane, s)]
         x, y = _position(home, signal, self.offset)
-        kind = _kind(signal)
-        turns = (
-            turns_of_light_code(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
-        )
-        source = element_with_value(signal)
-        said = None if source is None or signal.get("id") in self.restricted_ids else source.get("value")
-        value = 0.0 if source is None or said in {None, "", "None"} else number_attribute(source, "value")
-        signal_columns = {
-            "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
-            "type": signal.get("type"), "subtype": signal.get("subtype"),
-            "value": value if value > 0.0 else None,  # writers use -1 or 0 for no value
-            "unit": (signal if source is None else source).get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
-            "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
-        }  # fmt: skip
-        self.signals += [
-            {**signal_columns, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)}
-            for lane in self._lanelets_of_signal(listing, lanes)
-        ]
-        if kind == "stop_line":
+        place = {"road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y}
+        for sign in (signal, *signs_on_board(signal)):
+            name = (listing if sign is signal else sign).get("id", "")
+            columns = {"signal_id": name, **self._signal_columns(sign), **place}
+            # A sign on a board may apply to other lanes than the board; a reference to the board states the lanes of all its signs.
+            lanelets = self._lanelets_of_signal(listing, lanes, sign if listing is signal else listing)
+            self.signals += [
+                {**columns, "lanelet_id": lane.lanelet_id, "lane_s_m": lane.station_at(s)} for lane in lanelets
+            ]
+            if sign.get("id") in self.restricted_ids and columns["kind"] in KINDS_WITH_UNREAD_CONDITIONS:
+                for lane in lanelets:
+                    add_unread_condition(self.quality, lane.lanelet_id, f"signal {name}", "semantics or dependency")
+        if _kind(signal) == "stop_line":
             self.stop_lines += [
                 stop_line_row(listing.get("id", ""), lane.lanelet_id, lane.station_at(s), "signal")
                 for lane in self._lanelets_of_stop_line(listing, signal, s, lanes)
             ]
 
-    def _lanelets_of_signal(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
-        """Return the lanelets to which a signal applies.
+    def _signal_columns(self, signal: etree._Element) -> dict[str, Any]:
+        """Return the columns of `traffic_signal` that a signal states, wherever it stands."""
+        kind = _kind(signal)
+        source = element_with_value(signal)
+        said = None if source is None or signal.get("id") in self.restricted_ids else source.get("value")
+        value = 0.0 if source is None or said in {None, "", "None"} else number_attribute(source, "value")
+        return {
+            "kind": kind, "country": (signal.get("country") or "").lower() or None,
+            "type": signal.get("type"), "subtype": signal.get("subtype"),
+            "value": value if value > 0.0 else None,  # writers use -1 or 0 for no value
+            "unit": (signal if source is None else source).get("unit"), "dynamic": signal.get("dynamic") == "yes",
+            "turns": turns_of_light_code(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None,
+        }  # fmt: skip
+
+    def _lanelets_of_signal(
+        self, listing: etree._Element, lanes: list[Lanelet], sign: etree._Element | None = None
+    ) -> list[Lanelet]:
+        """Return the lanelets to which a signal applies; `sign`: the sign on it if it is a board.
 
         These are the lanes of its validity, if it has any, whose direction is its orientation (+ along, - against the
         reference line). If validity and orientation contradict each other, the validity decides, since it names the lanes.
         In RoadRunner's files they always do: the orientation is the direction in which the sign faces.
         """
-        valid = [
-            sorted((integer_attribute(v, "fromLane"), integer_attribute(v, "toLane")))
-            for v in listing.findall("validity")
-        ]
+        validities = (listing if sign is None else sign).findall("validity") or listing.findall("validity")
+        valid = [sorted((integer_attribute(v, "fromLane"), integer_attribute(v, "toLane"))) for v in validities]
         if valid:
             lanes = [lane for lane in lanes if any(low <= lane.lane.number <= high for low, high in valid)]
         along = {"+": 1, "-": -1}.get(listing.get("orientation", "none"))
@@ -163,8 +186,8 @@ class _SignalReader:
             self.quality.add("signal_orientation", "warning", None, message, len(self.contradictions))
         self._report_signs_of_unknown_codes()
         placed = {row["signal_id"] for row in self.signals}
-        for name, (road, _) in self.defined.items():
-            if name not in placed:
+        for name, (road, signal) in self.defined.items():
+            if name not in placed and not is_crossed_out(signal):
                 message = f"signal {name} of road {road.road_id} applies to no lane that vehicles drive on"
                 self.quality.add("signal_without_lane", "info", road.road_id, message)
 
@@ -172,9 +195,9 @@ class _SignalReader:
         """Report signs of countries whose codes are not known: any of them may be a stop or give-way sign."""
         codes = sorted({
             f"{signal.get('country', '')} {signal.get('type', '')}"
-            for _, signal in self.defined.values()
+            for signal in self.signs
             if _kind(signal) is None and signal.find("semantics") is None and signal.get("dynamic") != "yes"
-            and signal.get("type") not in {None, "", "-1", "none"} and not has_codes_of(signal.get("country", ""))
+            and signal.get("type") not in {None, "", "-1", "none", *BOARD_TYPES} and not has_codes_of(signal.get("country", ""))
         })  # fmt: skip
         if codes:
             named = name_list([escape_invisible(code[:40]) for code in codes])
@@ -184,8 +207,8 @@ class _SignalReader:
 
 def _kind(signal: etree._Element) -> str | None:
     """Return the kind of a signal: by its semantics, else by its code, else by its name."""
-    by_code = signal_kind(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
-    return kind_by_semantics(signal) or by_code
+    country, code, subtype = (signal.get(name, "") for name in ("country", "type", "subtype"))
+    return kind_by_semantics(signal) or signal_kind(country, code, signal.get("name", ""), subtype)
 
 
 def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -> tuple[float, float]:

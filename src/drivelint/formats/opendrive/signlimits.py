@@ -6,8 +6,8 @@ record no limit, or the same limit as the road of the sign; a different record i
 used: nations differ in whether it continues there.
 
 A sign that cannot be read (without number or unit, with a changing number, with a speed but an unknown code, or for some vehicles or hours
-only) makes the default of the road type unknown. A limit that
-the lane itself records still applies: it may be that of the sign.
+only) makes the default of the road type unknown. A limit that the lane itself records still applies: it may be that of the sign. In
+OpenDRIVE, a number needs a unit; without one, it is read where the code of the sign leaves only one.
 """
 
 from __future__ import annotations
@@ -15,6 +15,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from drivelint.formats.opendrive.network import SPEED_UNITS_MPS
+from drivelint.formats.opendrive.semantics import CHANGING_BOARD_TYPES
+from drivelint.phrases import escape_invisible
+from drivelint.road.signcodes import speed_without_unit_kmh
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -44,6 +47,7 @@ def speed_limit_rows(
     lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, recorded_rows: Rows, quality: MapQuality
 ) -> Rows:
     """Return the rows of `speed_limit`. `recorded_rows`: the rows that lanes and roads record; `signals`: rows of `traffic_signal`."""
+    _report_unread_signs(signals, quality)
     records: dict[str, Rows] = {lane.lanelet_id: [] for lane in lanes}
     for row in recorded_rows:
         records[row["lanelet_id"]].append(row)
@@ -145,12 +149,44 @@ def _is_contradiction(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
 
 
 def _may_be_limit(row: Mapping[str, Any]) -> bool:
-    """Return whether a sign that was not recognised has a speed, and so may be a limit."""
+    """Return whether a sign that was not recognised has a speed, or is a board that may show one, and so may be a limit."""
+    if row["type"] in CHANGING_BOARD_TYPES:
+        return True
     return row["kind"] is None and row["value"] is not None and row["unit"] in SPEED_UNITS_MPS
 
 
 def _sign_limit_mps(row: Mapping[str, Any]) -> float | None:
-    """Return the limit on a sign (m/s); None: it has no number or no unit, it changes, or its code is not known."""
-    unit = SPEED_UNITS_MPS.get(row["unit"] or "")
-    is_unread = unit is None or row["value"] is None or row["dynamic"] or row["kind"] is None
-    return None if is_unread or unit is None else float(row["value"]) * unit
+    """Return the limit on a sign (m/s); None: it cannot be read."""
+    return None if _cause_unread(row) else _stated_mps(row)
+
+
+def _cause_unread(row: Mapping[str, Any]) -> str | None:
+    """Return why the limit on a sign cannot be read; None: it can."""
+    if row["dynamic"] or row["type"] in CHANGING_BOARD_TYPES:
+        return "what it shows changes"
+    if row["kind"] is None:
+        return "its code is not known"
+    if row["value"] is None:
+        return "it has no number, or does not always apply"
+    return "its number has no known unit" if _stated_mps(row) is None else None
+
+
+def _stated_mps(row: Mapping[str, Any]) -> float | None:
+    if row["unit"]:
+        unit = SPEED_UNITS_MPS.get(row["unit"])
+        return None if unit is None else float(row["value"]) * unit
+    kmh = speed_without_unit_kmh(row["country"] or "", row["type"] or "", row["subtype"] or "", row["value"])
+    return None if kmh is None else kmh * SPEED_UNITS_MPS["km/h"]
+
+
+def _report_unread_signs(signals: Rows, quality: MapQuality) -> None:
+    """Report the signs whose limits cannot be read, by cause."""
+    signs_by_cause: dict[str, set[str]] = {}
+    for row in signals:
+        cause = _cause_unread(row) if row["kind"] in LIMIT_BEGIN_KINDS or _may_be_limit(row) else None
+        if cause is not None:
+            signs_by_cause.setdefault(cause, set()).add(row["signal_id"])
+    for cause, signs in sorted(signs_by_cause.items()):
+        first = escape_invisible(min(signs)[:40])
+        message = f"speed limit signs cannot be read (the first, {first}: {cause}): the limit is unknown where no lane records one"
+        quality.add("limit_sign_unread", "info", None, message, len(signs))
