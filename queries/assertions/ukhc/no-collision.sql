@@ -14,7 +14,7 @@
 -- merge_gap_s = 2.0
 -- tags = ["contact", "standing"]
 -- unaffected_by = ["velocity"]
--- reads = ["before_track", "between_steps", "clearance_least", "ego_state", "impact", "pair"]
+-- reads = ["before_track", "between_steps", "clearance_least", "ego_state", "impact", "pair", "quality"]
 -- requires = ["ego_size"]
 --
 -- [params.walking_mps]
@@ -53,18 +53,20 @@
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,
     -- An overlap between two steps is a contact only if it is deeper than the uncertainty of the ways between them (blur_m).
     -- Boxes that stay apart do not show that there was no contact at a step at which the speeds show an impact. An actor that is first seen
-    -- behind the ego may have been struck before.
-    CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL AND i.t_ns IS NULL AND f.t_ns IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
+    -- behind the ego may have been struck before. An ego that touches the outline of a thing that is no actor cannot pass.
+    CASE WHEN b.least_m < -b.blur_m THEN b.least_m WHEN b.least_m IS NULL AND i.t_ns IS NULL AND f.t_ns IS NULL AND o.message IS NULL THEN coalesce(p.clearance_m, l.least_m) END AS observed, 0.0 AS required,
     (p.clearance_is_bound OR p.clearance_m IS NULL) AND b.least_m IS NULL AND i.t_ns IS NULL AS at_least,
     CASE WHEN b.least_m < -b.blur_m THEN why('contact_between_steps', {'depth_m': -b.least_m})
         WHEN i.t_ns IS NOT NULL THEN why('impact_beside_boxes', {'apart_m': p.clearance_m})
         WHEN b.least_m IS NOT NULL THEN why('contact_not_ruled_out', {'step_s': (b.t_next_ns - b.t_ns) / 1e9})
-        WHEN f.t_ns IS NOT NULL THEN why('contact_before_track', {'object_id': p.object_id, 'apart_m': p.clearance_m}) END AS reason
+        WHEN f.t_ns IS NOT NULL THEN why('contact_before_track', {'object_id': p.object_id, 'apart_m': p.clearance_m})
+        ELSE o.message END AS reason
 FROM pair p
 LEFT JOIN between_steps b USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN clearance_least l USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN impact i USING (drive_id, ego_id, t_ns, object_id)
 LEFT JOIN (FROM before_track WHERE least_m <= 0) f USING (drive_id, ego_id, t_ns, object_id)
+LEFT JOIN (SELECT drive_id, actor_id AS ego_id, min(message) AS message FROM quality WHERE check_id = 'outline_contact' GROUP BY ALL) o USING (drive_id, ego_id)
 WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- A contact at a step: the reason says whether the ego moved.

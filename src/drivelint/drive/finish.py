@@ -23,6 +23,7 @@ from drivelint.drive.implausible.motion import implausible_motion_findings
 from drivelint.drive.lost_time import LATEST_CREDIBLE_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates
+from drivelint.drive.outlines.contact import outline_contact_findings
 from drivelint.drive.trace import (
     ASSUMED_MOTION_CHECK,
     BRAKE_LIGHTS,
@@ -104,6 +105,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
             *false_track_start_findings(states, step),
             *repeated_end_position_findings(states, actors),
         ]
+    findings += outline_contact_findings(states, step, actors, egos, recording.outlines)
     findings += _unknown_ego_light_findings(states, egos)
     missed = [absence for absence in missed if absence.ego_id in egos]
     states = absence.with_unknown_ego_states(states, missed, recording.frames_ns)

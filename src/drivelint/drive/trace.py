@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Floats, Indices, Mask, Times
+    from drivelint.drive.outlines.shapes import Outline
 
 Severity = Literal["info", "warning", "error"]
 
@@ -343,7 +344,7 @@ class Recording:
     units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`, `fixed_frame`: as in `Trace`.
     `frames_ns`: the times of all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping
     names the column of the indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
-    `why_no_ego`: why the log names no ego.
+    `why_no_ego`: why the log names no ego. `outlines`: things that do not move and are no actors.
     """
 
     format: str
@@ -369,6 +370,7 @@ class Recording:
     names_indicator: bool | None = None
     why_no_ego: str = ""
     fixed_frame: str = ""
+    outlines: list[Outline] = field(default_factory=list)
 
     def hand_over_states(self) -> States:
         """Return the states and drop them here, so that memory contains the states of a long drive only once."""

@@ -352,10 +352,8 @@ class _Walker:
         if kinds is not None and all(kind is None for kind in kinds):
             return _possible_words_of_macro(name)
         arguments = zip(body.parameters, kinds or [None] * len(body.parameters), strict=True)
-        bound = {
-            parameter: _possible_words_by_column().get(parameter) if kind is None else kind
-            for parameter, kind in arguments
-        }
+        columns = _possible_words_by_column()
+        bound = {parameter: columns.get(parameter) if kind is None else kind for parameter, kind in arguments}
         if not self._depth:
             self._call = None if call is None else syntax.byte_offset_of(call)
         self._depth += 1

@@ -204,11 +204,11 @@ def test_an_unknown_heading_leaves_a_shifted_box_without_a_place(tmp_path: Path)
 
 
 def test_obstacles_without_states_are_named(tmp_path: Path) -> None:
-    building = f'<environmentObstacle id="9"><type>building</type><shape><rectangle>{SIZE}</rectangle></shape></environmentObstacle>'
+    phantom = f'<phantomObstacle id="9"><shape><rectangle>{SIZE}</rectangle></shape><occupancySet/></phantomObstacle>'
     still = turning(f"<rectangle>{SIZE}</rectangle>")
     areas = standing(f"<rectangle>{SIZE}</rectangle>").replace("staticObstacle", "dynamicObstacle")
     areas = areas.replace("</initialState>", "</initialState><occupancySet/>")
-    trace = read(write(tmp_path, still, areas, building), ego="1")
+    trace = read(write(tmp_path, still, areas, phantom), ego="1")
     assert sorted(actors(trace)) == ["1", "50"]
     assert "not read: 9" in quality(trace)["unread_obstacle"]["message"]
     assert "of 50 only the initial state" in quality(trace)["uncertain_value"]["message"]

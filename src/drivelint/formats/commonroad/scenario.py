@@ -2,7 +2,7 @@
 
 A scenario has no ego, only the start of a planning problem: the user names an obstacle with --ego. The position of a state is that of the
 shape's origin, which may differ from the box centre (see `shapes`). Values given as areas or intervals are unknown. Environment obstacles
-(buildings, pillars) and phantom obstacles have no states: they are not read.
+(buildings, pillars) are outlines, no actors. Phantom obstacles are not read.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, QualityFinding, Recording, Stat
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.country import country_in_scenario_name
+from drivelint.formats.commonroad.environment import environment_outlines
 from drivelint.formats.commonroad.lights import signal_states
 from drivelint.formats.commonroad.shapes import box_offsets, read_shape, shape_findings
 from drivelint.phrases import name_list
@@ -125,7 +126,9 @@ def read(probe: Probe) -> Recording:
         bool((np.isnan(o).any(axis=0) & ~np.isnan(part["yaw_rad"])).any())
         for o, part in zip(offsets, parts, strict=True)
     ]
-    recording.findings += [*shape_findings(ids, shapes, lost), *_findings_on_unread_parts(root, obstacles)]
+    recording.outlines, unread = environment_outlines(root)
+    unread += [str(obstacle.get("id")) for obstacle in root.findall("phantomObstacle")]
+    recording.findings += [*shape_findings(ids, shapes, lost), *_findings_on_unread_parts(obstacles, unread)]
     return recording
 
 
@@ -140,11 +143,10 @@ def _move_to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floa
     log["yaw_rad"] = log["yaw_rad"] + turn_rad
 
 
-def _findings_on_unread_parts(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
-    """Return findings on values that are not read (areas and intervals), and on obstacles without states."""
+def _findings_on_unread_parts(obstacles: Sequence[etree._Element], unread: Sequence[str]) -> list[QualityFinding]:
+    """Return findings on values that are not read (areas and intervals), and on the `unread` obstacles."""
     uncertain = sum(int(float(str(o.xpath(_COUNT_OF_INEXACT_VALUES_XPATH)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
-    still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
     findings = []
     if uncertain:
         message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
@@ -155,11 +157,11 @@ def _findings_on_unread_parts(root: etree._Element, obstacles: Sequence[etree._E
             "in which the actor may be"
         )
         findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
-    if still:
+    if unread:
         message = (
-            f"environment and phantom obstacles are not read: {name_list(still)}: a contact with them is not detected"
+            f"environment and phantom obstacles are not read: {name_list(unread)}: a contact with them is not detected"
         )
-        findings.append(QualityFinding("unread_obstacle", "warning", message, len(still)))
+        findings.append(QualityFinding("unread_obstacle", "warning", message, len(unread)))
     return findings
 
 

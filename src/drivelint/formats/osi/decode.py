@@ -16,6 +16,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.osi import signal_heads as osi_heads
 from drivelint.formats.osi.enum_codes import EnumCodes, bulb_state_rows, moving_object_codes
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
+from drivelint.formats.osi.stationary import STATIONARY_FIELDS, Outlines, kind_by_number, outlines
 from drivelint.formats.protobuf.descriptors import (
     decode_batch,
     integer_values,
@@ -55,6 +56,7 @@ _GROUND_TRUTH_FIELDS: FieldTree = {
         },
         "vehicle_classification": {"type": None, "light_state": _LAMPS},
     },
+    "stationary_object": STATIONARY_FIELDS,
     "traffic_light": {
         "id": _ID,
         "classification": {"color": None, "mode": None, "is_out_of_service": None},
@@ -102,6 +104,7 @@ class FrameBatch:
     missing_coordinates: dict[str, Mask]
     has_zeros: bool
     bulbs: pa.Table
+    outlines: Outlines
 
 
 class Decoder:
@@ -126,6 +129,7 @@ class Decoder:
         if (repeated := _path_of_unexpected_list(kind, FIELD_TREES[message_type])) is not None:
             raise TraceError(f"{path}: the schema {message_type} in the log has {repeated} as a list: not OSI 3")
         self._words = EnumCodes(types, GROUND_TRUTH)
+        self._stationary_kinds = kind_by_number(types)
 
     def frames(self, log_messages: list[LogMessage]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
@@ -164,6 +168,7 @@ class Decoder:
             pc.coalesce(_host_vehicle_ids(truth), _host_vehicle_ids(message)).to_pylist(),
             frame, number, nameless, numbers, codes, not_finite, left_out, says_zero,
             bulb_state_rows(self._words, truth, self.lights),
+            outlines(truth, self._stationary_kinds),
         )  # fmt: skip
 
 

@@ -281,6 +281,9 @@ def _recording(
     if len(nameless):
         message = f"moving objects without an id: {len(nameless)}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
+    if unplaced := sum(batch.outlines.n_unplaced for batch in batches):
+        message = "stationary objects without a position are not read: a contact with them is not detected"
+        findings.append(QualityFinding("unread_obstacle", "warning", message, unplaced))
     lost_times = times_of_lost_rows(
         log_ns.astype(np.int64) if format_name == "osi-mcap" else t_ns,
         np.ones(len(t_ns), np.bool_),
@@ -301,6 +304,7 @@ def _recording(
         geo_reference=first_message.reference,
         geo_offset=first_message.geo_offset,
         conditions={} if first_message.nation is None else {"nation": first_message.nation},
+        outlines=[*{key: outline for batch in batches for key, outline in batch.outlines.items()}.values()],
     )
 
 
