@@ -357,14 +357,8 @@ def _create_or_check_settings_and_test_seal(request: AuditRequest, results: Resu
     if not results.create(AUDIT_FILE, content):
         there = read_audit_file(results, request.out) or {}
         if there.get("run_id") != run_hash:
-            other_versions = sorted(
-                name for name, value in versions().items() if there.get("versions", {}).get(name) != value
-            )
-            why = (
-                f"other versions of {', '.join(other_versions)}"
-                if other_versions
-                else "other rules, parameters or profiles"
-            )
+            names = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
+            why = f"other versions of {', '.join(names)}" if names else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         was_unchanged = _has_intact_seal(results, request.out)
         sealed.unseal(results)

@@ -58,8 +58,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     for drive_id, stretches in base_lookup.findings.items():
         if drive_id not in matched_drives:
             base_only_entries += [
-                _base_only_finding(finding, drive_id, new_lookup.verdict_at(None, finding), base_lookup)
-                for finding in stretches
+                _base_only_finding(was, drive_id, new_lookup.verdict_at(None, was), base_lookup) for was in stretches
             ]
     return Difference(
         entries=(*entries, *base_only_entries),
@@ -97,9 +96,7 @@ def _entries_of_drive(
     for i, now in enumerate(new_findings):
         if i in pairs:
             entries.append(_matched_finding(now, base_findings[pairs[i]], new_lookup))
-        elif wholes := [
-            j for j, finding in enumerate(base_findings) if match.is_part_of(now, finding, same_log=same_log)
-        ]:
+        elif wholes := [j for j, was in enumerate(base_findings) if match.is_part_of(now, was, same_log=same_log)]:
             matched.add(wholes[0])
             was = base_findings[wholes[0]]
             outcome = VerdictAndReason("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
@@ -216,10 +213,7 @@ def _new_unknowns(
             new_unknowns.append(
                 NewUnknowns(drive_id, ego_id, rule_id, profile, new_lookup.is_stable(rule_id), n, before, reason)
             )
-    return sorted(
-        new_unknowns,
-        key=lambda unknowns: (unknowns.drive_id, unknowns.ego_id, unknowns.rule_id, unknowns.profile or ""),
-    )
+    return sorted(new_unknowns, key=lambda row: (row.drive_id, row.ego_id, row.rule_id, row.profile or ""))
 
 
 def _unknown_counts_and_reasons(result: Result) -> dict[Any, tuple[int, str]]:
@@ -323,11 +317,7 @@ class ResultLookup:
         rows = [verdict for verdict in rows if verdict["profile"] in {row["profile"], None}]
         if not rows:
             return VerdictAndReason("none", "the rule has no verdict")
-        there = [
-            verdict
-            for verdict in rows
-            if self._concerns_object(verdict, row, drive_id) and _covers_time(verdict, finding, drive)
-        ]
+        there = [v for v in rows if self._concerns_object(v, row, drive_id) and _covers_time(v, finding, drive)]
         outcomes = [
             outcome
             for verdict in there
