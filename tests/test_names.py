@@ -1,6 +1,6 @@
 """Names in the product and in its tests are nouns and verbs: none is a bare participle or pronoun.
 
-It holds for functions, parameters, classes, fields, modules and constants; locals are free.
+It holds for functions, parameters, classes, fields, modules and constants, and in the product also for locals.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ _PRONOUNS = """
 """
 BARE = frozenset((_PARTICIPLES + _PRONOUNS).split())
 IN_TESTS = BARE - {"expected"}  # the usual name of the parameter that a test compares with
-ROOTS = (("src/drivelint", BARE), ("tests", IN_TESTS))
+PRODUCT = "src/drivelint"
+ROOTS = ((PRODUCT, BARE), ("tests", IN_TESTS))
 
 
 def folders() -> Iterator[Any]:
@@ -66,6 +67,15 @@ def names(path: Path) -> Iterator[tuple[int, str, bool]]:
                 yield from ((target.lineno, target.id, False) for target in targets if isinstance(target, ast.Name))
 
 
+def locals_of(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield line and name of all that a module assigns anywhere, with the variables of comprehensions and parameters of lambdas."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id
+        elif isinstance(node, ast.arg):
+            yield node.lineno, node.arg
+
+
 def is_bare(name: str, bare: frozenset[str] = BARE, *, of_function: bool) -> bool:
     word = re.sub(r"^_+|_+$", "", name).lower()
     return not name.startswith("__") and word in bare and not (of_function and word in VERBS)
@@ -99,3 +109,21 @@ def test_no_name_is_a_bare_participle_or_pronoun(files: list[Path], bare: frozen
         for line, name, of_function in names(path)
         if is_bare(name, bare, of_function=of_function)
     ]
+
+
+@pytest.mark.parametrize(
+    "files", [pytest.param(*param.values[:1], id=param.id) for param in folders() if param.id.startswith(PRODUCT)]
+)
+def test_no_local_of_the_product_is_a_bare_participle_or_pronoun(files: list[Path]) -> None:
+    assert not [
+        f"{path.relative_to(ROOT)}:{line} {name}"
+        for path in files
+        for line, name in locals_of(path)
+        if is_bare(name, of_function=False)
+    ]
+
+
+def test_locals_are_all_that_is_assigned(tmp_path: Path) -> None:
+    path = tmp_path / "a.py"
+    path.write_text("def f(a):\n    b = [c for c in a]\n    for d in b: pass\n    return lambda e: (g := e)\n", "utf-8")
+    assert {name for _, name in locals_of(path)} == set("abcdeg")

@@ -69,10 +69,10 @@ def _bucket_client(root: str) -> Any:
 
 
 def _client_and_prefix(url: str) -> tuple[Any, str]:
-    found = _URL.fullmatch(url)
-    if found is None:
+    match = _URL.fullmatch(url)
+    if match is None:
         raise UsageError(f"{url}: write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX or az://CONTAINER/PREFIX")
-    return _bucket_client(f"{found[1]}://{found[2]}"), found[3].strip("/")
+    return _bucket_client(f"{match[1]}://{match[2]}"), match[3].strip("/")
 
 
 class Bucket:

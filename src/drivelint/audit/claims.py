@@ -103,8 +103,8 @@ class Claims:
         return f'{{"owner": "{self._owner}"}}\n'.encode()
 
     def _is_alive(self, owner: str) -> bool:
-        seen = self._results.read(f"claims/owners/{owner}.json")
-        return seen is not None and time.time() - float(json.loads(seen)["at"]) < self._lease_s
+        sign_of_life = self._results.read(f"claims/owners/{owner}.json")
+        return sign_of_life is not None and time.time() - float(json.loads(sign_of_life)["at"]) < self._lease_s
 
     def _write_heartbeat(self) -> None:
         self._results.write(f"claims/owners/{self._owner}.json", f'{{"at": {time.time()}}}\n'.encode())

@@ -94,16 +94,16 @@ def remove_drives(results: ResultStore, keys: pa.Array) -> None:
     with TemporaryDirectory(prefix="drivelint-compact-") as downloads:
         for chunk in chunk_ids(results) if len(keys) else ():
             receipts = _read_chunk(results, "receipts", chunk, Path(downloads))
-            kept = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
-            if kept.num_rows == receipts.num_rows:
+            remaining = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
+            if remaining.num_rows == receipts.num_rows:
                 continue
-            left = kept["key"].combine_chunks()
+            left = remaining["key"].combine_chunks()
             rows = {table: _read_chunk(results, table, chunk, Path(downloads)) for table in TABLES}
             rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
             # remove the old receipts first: if killed in between, drives are judged again, but never exist twice
             results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
-            if kept.num_rows:
-                _write_chunk(results, {table: _parquet_bytes(of) for table, of in rows.items()}, kept)
+            if remaining.num_rows:
+                _write_chunk(results, {table: _parquet_bytes(of) for table, of in rows.items()}, remaining)
 
 
 @contextmanager
@@ -127,7 +127,7 @@ def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, downloads
     )
     ids = chunk_ids(results)
     for table in (*TABLES, "receipts"):
-        files = [str(results.fetch(chunk_name(table, each), downloads)) for each in ids]
+        files = [str(results.fetch(chunk_name(table, chunk_id), downloads)) for chunk_id in ids]
         if files:
             con.read_parquet(escape_wildcards(files)).create_view(f"{prefix}{table}", replace=True)
         else:
@@ -138,12 +138,12 @@ def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, downloads
 
 def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
     """Return a hash of all rows of the views. It does not depend on the chunks, on the order of rows, or on the paths of the logs."""
-    told: list[Any] = []
+    hashed_rows: list[Any] = []
     for table in TABLES:
         left_out = " EXCLUDE (log)" if table == "drives" else ""
         row = con.execute(statement("audit/digest", table=table, columns=f"*{left_out}")).fetchone()
-        told.append([str(value) for value in row or ()])
-    return digest(told)
+        hashed_rows.append([str(value) for value in row or ()])
+    return digest(hashed_rows)
 
 
 def unpacked_receipts(results: ResultStore, *, only_whole_batches: bool) -> Iterator[list[Receipt]]:
@@ -176,10 +176,12 @@ def _pack_receipts(
     results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], downloads: Path
 ) -> int:
     """Write a chunk of these receipts and their rows, then remove the small files. Return the number of drives in the chunk."""
-    lost = {batch for batch in {each.batch for each in receipts} if results.read(batch_name("drives", batch)) is None}
-    if lost:  # the rows were removed: without a receipt, the drives are judged again
-        results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
-        receipts = [receipt for receipt in receipts if receipt.batch not in lost]
+    lost_batches = {
+        batch for batch in {receipt.batch for receipt in receipts} if results.read(batch_name("drives", batch)) is None
+    }
+    if lost_batches:  # the rows were removed: without a receipt, the drives are judged again
+        results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost_batches)
+        receipts = [receipt for receipt in receipts if receipt.batch not in lost_batches]
     packed_keys = _packed_keys(results, con, receipts, downloads)
     new = [receipt for receipt in receipts if receipt.key not in packed_keys]
     if new:
@@ -189,18 +191,18 @@ def _pack_receipts(
         for name in TABLES:
             rows[name] = downloads / f"{name}.parquet"
             packed = batch_rows_query(con, results, downloads, name, new)
-            written = con.execute(
+            row_count = con.execute(
                 f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
             ).fetchone()
-            if name == "drives" and written != (len(new),):
-                n_written = written[0] if written else 0
+            if name == "drives" and row_count != (len(new),):
+                n_written = row_count[0] if row_count else 0
                 raise DriveLintError(
                     f"{len(new)} receipts have {n_written} rows in the table drives: judge these drives again"
                 )
         con.unregister("_packed")
         _write_chunk(results, {name: file.read_bytes() for name, file in rows.items()}, table)
     results.delete(receipt_name(receipt.key) for receipt in receipts)
-    results.delete(batch_name(name, batch) for batch in {each.batch for each in receipts} for name in TABLES)
+    results.delete(batch_name(name, batch) for batch in {receipt.batch for receipt in receipts} for name in TABLES)
     return len(new)
 
 
@@ -208,7 +210,7 @@ def batch_rows_query(
     con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, receipts: Sequence[Receipt]
 ) -> str:
     """Return the SELECT that reads one table's rows from the batches of these receipts, for the drives in the relation `_packed`."""
-    files = {each.batch: str(results.fetch(batch_name(table, each.batch), downloads)) for each in receipts}
+    files = {receipt.batch: str(results.fetch(batch_name(table, receipt.batch), downloads)) for receipt in receipts}
     con.read_parquet(escape_wildcards(files.values()), filename=True).create_view("_rows", replace=True)
     return statement("audit/packed", order=_SORT_COLUMNS_OF_TABLE[table])
 
@@ -220,17 +222,17 @@ def _packed_keys(
     ids = chunk_ids(results)
     if not ids:
         return set()
-    files = [str(results.fetch(chunk_name("receipts", each), downloads)) for each in ids]
+    files = [str(results.fetch(chunk_name("receipts", chunk_id), downloads)) for chunk_id in ids]
     con.register("_new", pa.table({"key": [r.key for r in receipts], "rows_sha256": [r.rows_sha256 for r in receipts]}))
     con.read_parquet(escape_wildcards(files)).create_view("_old", replace=True)
-    found = con.execute(statement("audit/known")).fetchall()
+    key_rows = con.execute(statement("audit/known")).fetchall()
     con.unregister("_new")
-    for key, there, here in found:
+    for key, there, here in key_rows:
         if there != here:
             raise DriveLintError(
                 f"two workers got different results for one key ({key}): use one machine image for all workers"
             )
-    return {key for key, _, _ in found}
+    return {key for key, _, _ in key_rows}
 
 
 def _write_chunk(results: ResultStore, tables: dict[str, bytes], receipts: pa.Table) -> None:
@@ -266,8 +268,8 @@ def _read_chunk(results: ResultStore, table: str, chunk: str, downloads: Path) -
 
 def receipt_row(receipt: Receipt) -> dict[str, Any]:
     """Return a receipt as a row of the table `receipts`."""
-    told = msgspec.to_builtins(receipt)
-    return {**told, **{key: sorted(told[key].items()) for key in ("counts", "failed", "tags")}}
+    values = msgspec.to_builtins(receipt)
+    return {**values, **{key: sorted(values[key].items()) for key in ("counts", "failed", "tags")}}
 
 
 def _parquet_bytes(rows: pa.Table) -> bytes:

@@ -96,13 +96,13 @@ def write_tables(
     ids = chunk_ids(results)
     n_added = n_removed = 0
     for table in TABLE_NAMES:
-        names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
+        names = ["rules.parquet"] if table == "rules" else [chunk_name(table, chunk_id) for chunk_id in ids]
         files = {_file_name_by_hash(file): file for file in (results.fetch(name, downloads) for name in names)}
         schema = con.table(table).limit(0).to_arrow_table().schema
         where = _table_place(dest, table)
         job = partial(_write_table, where, table, files, schema, run_id=run_id, digest=digest)
-        done = _run_with_retries(where, job)
-        n_added, n_removed = n_added + done.n_added, n_removed + done.n_removed
+        change = _run_with_retries(where, job)
+        n_added, n_removed = n_added + change.n_added, n_removed + change.n_removed
     return DeltaChange(n_added, n_removed)
 
 
@@ -115,27 +115,27 @@ def _write_table(
     store, there = open_store(where), _open_table(where, table, run_id)
     active = {} if there is None else _sizes_of_active_files(there)
     now = int(time.time() * 1000)
-    added = []
+    additions = []
     for name in sorted(files.keys() - active.keys()):
         content = files[name].read_bytes()
         store.write(name, content)
         stats = json.dumps({"numRecords": pq.read_metadata(pa.BufferReader(content)).num_rows})
-        added.append(AddAction(name, len(content), {}, now, data_change=True, stats=stats))
-    removed = [RemoveAction(name, True, now, active[name], {}) for name in sorted(active.keys() - files.keys())]
+        additions.append(AddAction(name, len(content), {}, now, data_change=True, stats=stats))
+    removals = [RemoveAction(name, True, now, active[name], {}) for name in sorted(active.keys() - files.keys())]
     about = CommitProperties(custom_metadata={DIGEST_KEY: digest})
     if there is None:
         create_table_with_add_actions(
             _table_uri(where),
             Schema.from_arrow(schema),
-            added,
+            additions,
             name=_delta_lake_table_name(table),
             description=_delta_lake_table_description(run_id),
             storage_options=_STORAGE_OPTIONS,
             commit_properties=about,
         )
-    elif added or removed or _digest_of_newest_commit(store, there.version()) != digest:
-        there.create_write_transaction([*added, *removed], "append", there.schema(), commit_properties=about)
-    return DeltaChange(len(added), len(removed))
+    elif additions or removals or _digest_of_newest_commit(store, there.version()) != digest:
+        there.create_write_transaction([*additions, *removals], "append", there.schema(), commit_properties=about)
+    return DeltaChange(len(additions), len(removals))
 
 
 def _open_table(where: str, table: str, run_id: str) -> DeltaTable | None:
@@ -144,10 +144,10 @@ def _open_table(where: str, table: str, run_id: str) -> DeltaTable | None:
     from deltalake.exceptions import TableNotFoundError
 
     try:
-        found = DeltaTable(_table_uri(where), storage_options=_STORAGE_OPTIONS)
+        delta_table = DeltaTable(_table_uri(where), storage_options=_STORAGE_OPTIONS)
     except TableNotFoundError:
         return None
-    about = found.metadata()
+    about = delta_table.metadata()
     if (about.name, about.description) != (_delta_lake_table_name(table), _delta_lake_table_description(run_id)):
         of = (
             "by other rules, parameters or versions"
@@ -155,20 +155,20 @@ def _open_table(where: str, table: str, run_id: str) -> DeltaTable | None:
             else "that drivelint did not write"
         )
         raise UsageError(f"{where}: has a Delta table {of}: choose another --delta")
-    return found
+    return delta_table
 
 
 def _sizes_of_active_files(table: DeltaTable) -> dict[str, int]:
     """Return the files of the table's newest version: name -> size in bytes."""
-    told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
-    return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
+    actions = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
+    return {row["path"]: row["size_bytes"] for row in actions.to_pylist()}
 
 
 def _digest_of_newest_commit(store: ResultStore, version: int) -> str | None:
     """Return the digest in the newest commit; None: it has none, or the commit file was deleted."""
     lines = (store.read(f"_delta_log/{version:020}.json") or b"").splitlines()
-    found = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
-    return found[0].get(DIGEST_KEY) if found else None
+    infos = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
+    return infos[0].get(DIGEST_KEY) if infos else None
 
 
 def _file_name_by_hash(file: Path) -> str:

@@ -60,8 +60,8 @@ def divide_into_tasks(
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            most = min(max_drives, SMALL_TASK_MAX_DRIVES) if n_cut < n_small else max_drives
-            if len(part) >= most or sum(each.size for each in part) >= FULL_TASK_BYTES:
+            largest = min(max_drives, SMALL_TASK_MAX_DRIVES) if n_cut < n_small else max_drives
+            if len(part) >= largest or sum(drive_of_part.size for drive_of_part in part) >= FULL_TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part, n_cut = [], n_cut + 1
         if part:
@@ -163,8 +163,8 @@ def _loss_reason(outcome: TaskOutcome) -> str | None:
 
 def empty_tables() -> dict[str, pa.Table]:
     """Return all tables of an audit, each with no rows."""
-    nobody = AuditDrive("", DriveInput())
+    no_drive = AuditDrive("", DriveInput())
     return {
-        table: with_key(empty_table(TABLE_OF_FILE[table]), "", nobody if table == "drives" else None)
+        table: with_key(empty_table(TABLE_OF_FILE[table]), "", no_drive if table == "drives" else None)
         for table in TABLES
     }

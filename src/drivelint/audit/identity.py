@@ -54,9 +54,9 @@ def run_id(settings: JudgeSettings) -> str:
     `rule_table`."""
     rules = rule_table(settings).select(["rule_id", "rule_version", "params", "profiles"]).to_pylist()
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles).to_pylist()
-    chosen = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
-    named = sorted(rule.id for rule in chosen if rule.is_named)
-    return digest([versions(), rules, named, profiles, settings.robustness])
+    selection = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
+    named_ids = sorted(rule.id for rule in selection if rule.is_named)
+    return digest([versions(), rules, named_ids, profiles, settings.robustness])
 
 
 class OptionHashes:
@@ -71,24 +71,24 @@ class OptionHashes:
 
         For a map that cannot be read, the hash uses its name; drives with that map are refused until it can be read.
         """
-        told: dict[str, Any] = msgspec.to_builtins(options, enc_hook=str)
-        name = digest(told)
+        values: dict[str, Any] = msgspec.to_builtins(options, enc_hook=str)
+        name = digest(values)
         if name not in self._known:
             for key in ("map", "map_dir"):
-                if told[key] is not None:
-                    told[key] = self._file(told[key])
-            if told["mapping"] is not None and Path(told["mapping"]).is_file():
-                told["mapping"] = self._file(told["mapping"])
-            self._known[name] = digest(told)
+                if values[key] is not None:
+                    values[key] = self._file(values[key])
+            if values["mapping"] is not None and Path(values["mapping"]).is_file():
+                values["mapping"] = self._file(values["mapping"])
+            self._known[name] = digest(values)
         return self._known[name]
 
 
 def _content_hash(path: str) -> str:
     where = Path(path)
     if (url := url_of_path(where)) is not None:
-        found = find_object(url)
+        remote = find_object(url)
         with TemporaryDirectory(prefix="drivelint-map-") as home:
-            return f"unread {url}" if found is None else file_sha256(download(found, Path(home)))
+            return f"unread {url}" if remote is None else file_sha256(download(remote, Path(home)))
     try:
         if where.is_dir():
             files = sorted(file for file in where.rglob("*") if file.is_file())

@@ -39,11 +39,11 @@ def fill_listed_drives(
             continue
         options_id = hashes.hash_of(drive.options)
         size, stamp = (drive.size, drive.stamp) if drive.stamp else _size_and_stamp(drive.log)
-        found = drive.with_ids(size, stamp, run_id, options_id)
+        drive_with_ids = drive.with_ids(size, stamp, run_id, options_id)
         some.append(
             {
-                "source_id": found.source_id,
-                "log": found.log,
+                "source_id": drive_with_ids.source_id,
+                "log": drive_with_ids.log,
                 "size": size,
                 "stamp": stamp,
                 "options_id": options_id,
@@ -83,12 +83,12 @@ def unjudged_drives(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
 def _size_and_stamp(log: str) -> tuple[int, str]:
     """Return a log's size in bytes, and the time of its last change or its ETag; (0, "") if the log cannot be read."""
     if is_url(log):
-        found = find_object(log)
-        return (0, "") if found is None else (found.size, found.e_tag)
+        remote = find_object(log)
+        return (0, "") if remote is None else (remote.size, remote.e_tag)
     path = Path(log)
     try:
         files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
         about = [(file.stat().st_size, file.stat().st_mtime_ns) for file in files]
     except OSError:
         return 0, ""
-    return sum(size for size, _ in about), str(max((changed for _, changed in about), default=0))
+    return sum(size for size, _ in about), str(max((mtime for _, mtime in about), default=0))

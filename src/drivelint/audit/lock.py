@@ -59,9 +59,9 @@ def _lock_store(results: ResultStore) -> Iterator[None]:
         return f'{{"at": {time.time()}}}\n'.encode()
 
     if not results.create(_LOCK_FILE, heartbeat_content()):
-        seen = json.loads(results.read(_LOCK_FILE) or b'{"at": 0}')["at"]
-        if time.time() - seen < LOCK_EXPIRY_S:
-            raise _in_use_error(f"sign of life {time.time() - seen:.0f} s ago")
+        last_sign_s = json.loads(results.read(_LOCK_FILE) or b'{"at": 0}')["at"]
+        if time.time() - last_sign_s < LOCK_EXPIRY_S:
+            raise _in_use_error(f"sign of life {time.time() - last_sign_s:.0f} s ago")
         results.write(_LOCK_FILE, heartbeat_content())
     stop = threading.Event()
 

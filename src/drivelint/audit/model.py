@@ -111,9 +111,9 @@ class Receipt:
 
     def to_json(self) -> bytes:
         """Return the receipt as the JSON that is stored."""
-        told = msgspec.to_builtins(self)
-        del told["reused"]
-        return msgspec.json.encode(told, order="sorted") + b"\n"
+        values = msgspec.to_builtins(self)
+        del values["reused"]
+        return msgspec.json.encode(values, order="sorted") + b"\n"
 
     @classmethod
     def from_json(cls, content: bytes) -> Receipt:

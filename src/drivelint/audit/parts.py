@@ -37,12 +37,12 @@ def n_expected_drives(results: ResultStore) -> int | None:
 
     Unfinished parts count, or all parts if none is unfinished. If one of these is a shard, all shards count.
     """
-    said = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
-    open_ = unfinished_parts(results) or sorted(said)
+    count_texts = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
+    open_ = unfinished_parts(results) or sorted(count_texts)
     if not open_:
         return None
-    counted = [n for name, n in said.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
-    return sum(map(int, counted)) if all(n.isdigit() for n in counted) else None
+    counts = [n for name, n in count_texts.items() if ("-of-" in name if "-of-" in open_[0] else name == open_[0])]
+    return sum(map(int, counts)) if all(n.isdigit() for n in counts) else None
 
 
 def record_end(results: ResultStore, part: str) -> None:

@@ -206,7 +206,7 @@ def _judge_remaining(
         with claims.keep_alive() if claims else nullcontext():
             ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else MAX_TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
-            most = max_drives_per_task(n_left, workers.capacity)
+            max_drives = max_drives_per_task(n_left, workers.capacity)
             driver = TaskDriver(
                 workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
             )
@@ -215,7 +215,7 @@ def _judge_remaining(
                 settings, n_small = _settings_of_workers(request), workers.capacity
                 driver.run(
                     divide_into_tasks(
-                        todo, request.out, run_hash, settings, group_size=ahead, max_drives=most, n_small=n_small
+                        todo, request.out, run_hash, settings, group_size=ahead, max_drives=max_drives, n_small=n_small
                     )
                 )
                 if claims is None or not claims.n_waiting:
@@ -276,8 +276,8 @@ def _pack_and_seal(
     sealed.unseal(results)
     compact(results)
     create_views(con, results, downloads)
-    told = read_audit_file(results, "the audit") or {}
-    robust = bool(told.get("settings", {}).get("robustness"))
+    audit_file = read_audit_file(results, "the audit") or {}
+    robust = bool(audit_file.get("settings", {}).get("robustness"))
     audit_summary = replace(summary_of_all_drives(con, n_reused), missing_parts=list(missing_parts), robust=robust)
     content = (json.dumps(audit_summary.file_content(), indent=2, sort_keys=True) + "\n").encode()
     sealed.seal(results, [AUDIT_FILE, RULES_FILE], content)
@@ -309,10 +309,10 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     `delta_dest`: folder or URL prefix where the packed tables are also written as Delta tables. Errors: `UsageError`, `OutputError`.
     """
     results = open_store(out)
-    told = read_audit_file(results, out)
-    if told is None:
+    audit_file = read_audit_file(results, out)
+    if audit_file is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
-    run_hash = told["run_id"]
+    run_hash = audit_file["run_id"]
     if delta_dest is not None:
         delta_lake.require_writable(delta_dest, out, run_hash)
     progress.stage("packing", None)
@@ -350,15 +350,15 @@ def _create_or_check_settings_and_test_seal(request: AuditRequest, results: Resu
     Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
     other rules, parameters or versions, or if its files were changed after it ended.
     """
-    told = {"run_id": run_hash, "versions": versions(), "settings": _settings_without_memory(request.settings)}
-    told |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
-    content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
+    audit_file = {"run_id": run_hash, "versions": versions(), "settings": _settings_without_memory(request.settings)}
+    audit_file |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
+    content = (json.dumps(audit_file, indent=2, sort_keys=True, default=str) + "\n").encode()
     was_unchanged = False
     if not results.create(AUDIT_FILE, content):
         there = read_audit_file(results, request.out) or {}
         if there.get("run_id") != run_hash:
-            changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
-            why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
+            names = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
+            why = f"other versions of {', '.join(names)}" if names else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         was_unchanged = _has_intact_seal(results, request.out)
         sealed.unseal(results)
@@ -375,9 +375,9 @@ def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
     damaged file."""
     content = results.read(AUDIT_FILE)
     try:
-        told = None if content is None else json.loads(content)
-        if told is None or (isinstance(told["settings"], dict) and isinstance(told["run_id"], str)):
-            return told
+        document = None if content is None else json.loads(content)
+        if document is None or (isinstance(document["settings"], dict) and isinstance(document["run_id"], str)):
+            return document
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
     raise UsageError(
@@ -395,4 +395,4 @@ def _settings_without_memory(settings: JudgeSettings) -> dict[str, Any]:
 
 
 def _drive_input(request: AuditRequest) -> DriveInput:
-    return DriveInput(**{each.name: getattr(request, each.name) for each in fields(DriveInput)})
+    return DriveInput(**{field.name: getattr(request, field.name) for field in fields(DriveInput)})

@@ -55,11 +55,11 @@ def require_listed_files_unchanged_and_return_has_list(results: ResultStore, dow
     copies.
     Errors: also `OutputError`.
     """
-    said = hashes_in_manifest(results.read(MANIFEST) or b"")
-    if not said:
+    hashes = hashes_in_manifest(results.read(MANIFEST) or b"")
+    if not hashes:
         return False
-    for name in sorted({*results.names(_TABLES_FOLDER), *said}):
-        if name not in said or _file_sha256(results, downloads, name) != said[name]:
+    for name in sorted({*results.names(_TABLES_FOLDER), *hashes}):
+        if name not in hashes or _file_sha256(results, downloads, name) != hashes[name]:
             if results.read(MANIFEST) is None:  # a shard has found the files unchanged, and has begun to change them
                 return False
             raise UsageError(
@@ -113,7 +113,7 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
         for batch, receipts in groupby(some, key=lambda receipt: receipt.batch):
             if results.read(batch_name("drives", batch)) is None:
                 continue  # the rows were removed: these drives are judged again
-            expected_hashes = {each.key: (each.log, each.rows_sha256) for each in receipts}
+            expected_hashes = {receipt.key: (receipt.log, receipt.rows_sha256) for receipt in receipts}
             _require_rows_match_hashes(
                 results, dest, {table: batch_name(table, batch) for table in TABLES}, expected_hashes
             )
@@ -121,7 +121,7 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
         names = {table: chunk_name(table, chunk) for table in (*TABLES, "receipts")}
         with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
             receipts = _read_table(results, dest, names.pop("receipts"), Path(downloads), RECEIPT_SCHEMA).to_pylist()
-        expected_hashes = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
+        expected_hashes = {receipt["key"]: (receipt["log"], receipt["rows_sha256"]) for receipt in receipts}
         _require_rows_match_hashes(results, dest, names, expected_hashes, refuse_other_drives=True)
 
 
@@ -136,19 +136,22 @@ def _require_rows_match_hashes(
     """Raise `UsageError` if rows do not match `expected_hashes`: key -> (log, hash). `names`: table -> its file. `refuse_other_drives`:
     also refuse rows of other drives."""
     with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
-        read = {
+        rows_by_table = {
             table: _read_table(results, dest, name, Path(downloads), empty_tables()[table].schema)
             for table, name in names.items()
         }
-    by_key = {table: dict(_rows_by_key(rows)) for table, rows in read.items()}
+    by_key = {table: dict(_rows_by_key(rows)) for table, rows in rows_by_table.items()}
     for key, (log, rows_hash) in expected_hashes.items():
-        if rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in read.items()}) != rows_hash:
+        if (
+            rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in rows_by_table.items()})
+            != rows_hash
+        ):
             raise UsageError(
                 f"{dest}: the rows of {log} were changed since drivelint audit wrote them: {_ADVICE_ON_CHANGED_FILE}"
             )
     for table, rows in by_key.items():
         n_told = sum(of.num_rows for key, of in rows.items() if key in expected_hashes or not refuse_other_drives)
-        if n_told != read[table].num_rows:
+        if n_told != rows_by_table[table].num_rows:
             raise UsageError(
                 f"{dest.rstrip('/')}/{names[table]}: has rows that drivelint audit did not write: {_ADVICE_ON_CHANGED_FILE}"
             )

@@ -75,9 +75,9 @@ def expand_manifests(
     existing log: a table of states may have any columns. Errors: `UsageError` as in `drives`, and for a log in two rows with different
     options, because a check has one result per log.
     """
-    plain = DriveInput(**{each.name: getattr(options, each.name) for each in fields(DriveInput)})
+    plain = DriveInput(**{field.name: getattr(options, field.name) for field in fields(DriveInput)})
     logs: list[str] = []
-    own: dict[Path, DriveInput] = {}
+    options_by_path: dict[Path, DriveInput] = {}
     for trace in traces:
         if not _is_manifest_of_existing_logs(Path(trace)):
             logs.append(trace)
@@ -87,12 +87,12 @@ def expand_manifests(
         ):
             note(text)
         for drive in _drives_of_manifest(Path(trace), trace, plain):
-            if own.setdefault(Path(drive.log), drive.options) != drive.options:
+            if options_by_path.setdefault(Path(drive.log), drive.options) != drive.options:
                 raise UsageError(
                     f"{trace}: names {drive.log} twice, with different options: drivelint audit judges it with both"
                 )
             logs.append(drive.log)
-    return tuple(logs), own
+    return tuple(logs), options_by_path
 
 
 def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
@@ -102,9 +102,11 @@ def tag_warnings(tag_names: Sequence[str]) -> Iterator[str]:
     for name in tag_names:
         text = name.casefold()
         # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
-        turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
-        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY_FOR_HINT))[:1]:
-            yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
+        turned = [column for column in OPTION_COLUMNS if column != text and sorted(column) == sorted(text)]
+        for candidate in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY_FOR_HINT))[
+            :1
+        ]:
+            yield f"the manifest's column {name} is only a tag: did you mean {candidate}?"
 
 
 def _is_manifest_of_existing_logs(path: Path) -> bool:
@@ -120,19 +122,19 @@ def _is_manifest_of_existing_logs(path: Path) -> bool:
 
 def _drives_in_bucket(url: str, options: DriveInput) -> Iterator[AuditDrive]:
     """Yield the drives below a URL prefix, or of a manifest in the object store."""
-    one = find_object(url) if url.lower().endswith((".parquet", ".csv")) else None
-    if one is not None:
+    manifest = find_object(url) if url.lower().endswith((".parquet", ".csv")) else None
+    if manifest is not None:
         with TemporaryDirectory(prefix="drivelint-manifest-") as home:
-            copy = download(one, Path(home))
+            copy = download(manifest, Path(home))
             if _is_manifest(copy, with_mapping=options.mapping is not None):
                 yield from _drives_of_manifest(copy, url, options)
                 return
-    found = [one] if one is not None else list_objects(url)
+    remote_objects = [manifest] if manifest is not None else list_objects(url)
     n = 0
-    for each in found:
-        if is_log_name(each.url):
+    for remote in remote_objects:
+        if is_log_name(remote.url):
             n += 1
-            yield AuditDrive(each.url, options, {}, each.size, each.e_tag)
+            yield AuditDrive(remote.url, options, {}, remote.size, remote.e_tag)
     if not n:
         raise TraceError(
             f"{url}: no log below this prefix (looked for {', '.join(sorted(TRACE_SUFFIXES))}): check the URL"
@@ -180,7 +182,7 @@ def _may_have_actor_states(path: Path) -> bool:
     """
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
-        numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
+        numbers = sum(pa.types.is_primitive(kind) and not pa.types.is_boolean(kind) for kind in types)
         return numbers >= _LEAST_NUMERIC_COLUMNS_OF_STATES or any(map(pa.types.is_nested, types))
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _SAMPLE_LINES)]
@@ -221,19 +223,19 @@ def _drives_of_manifest(path: Path, manifest_name: str, options: DriveInput) -> 
             _require_valid_options(row, options)
         except UsageError as error:
             raise UsageError(f"{manifest_name}, row {number} ({log}): {error}: nothing was judged yet") from error
-        own: dict[str, Any] = {}
+        own_options: dict[str, Any] = {}
         if place := row.pop("map", None):
-            own |= {"map": Path(_resolve_path(manifest_name, place)), "map_dir": None}
+            own_options |= {"map": Path(_resolve_path(manifest_name, place)), "map_dir": None}
         if ego := row.pop("ego", None):
-            own["ego"] = ego
+            own_options["ego"] = ego
         if env := row.pop("environment", None):
-            own["env"] = (*options.env, *_split_conditions(env))
+            own_options["env"] = (*options.env, *_split_conditions(env))
         if (mapping := row.pop("mapping", None)) and (Path(path).parent / mapping).is_file():
             mapping = _resolve_path(manifest_name, mapping)
-        said = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
-        own |= {name: value for name, value in said.items() if value}
+        cells = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
+        own_options |= {name: value for name, value in cells.items() if value}
         tags = {name: value for name, value in sorted(row.items()) if value}
-        yield AuditDrive(_resolve_path(manifest_name, log), replace(options, **own), tags)
+        yield AuditDrive(_resolve_path(manifest_name, log), replace(options, **own_options), tags)
 
 
 def _require_valid_options(row: Mapping[str, str], options: DriveInput) -> None:
@@ -255,11 +257,11 @@ def _manifest_rows(path: Path) -> Iterator[dict[str, str]]:
     """Yield the rows of a manifest with all cells as text; a missing cell is ''."""
     try:
         if path.suffix.lower() == ".parquet":
-            with path.open("rb") as opened, pq.ParquetFile(opened) as file:
+            with path.open("rb") as source, pq.ParquetFile(source) as file:
                 for batch in file.iter_batches(_MANIFEST_BATCH_ROWS):
                     yield from _rows_as_text(batch.to_pylist())
         else:
-            with path.open("rb") as opened, pa_csv.open_csv(opened) as reader:
+            with path.open("rb") as source, pa_csv.open_csv(source) as reader:
                 for batch in reader:
                     yield from _rows_as_text(batch.to_pylist())
     except (OSError, ValueError) as error:

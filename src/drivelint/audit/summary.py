@@ -124,8 +124,8 @@ class AuditSummary:
             "errors",
             "beyond_limits",
         )
-        both = {name: getattr(self, name) + getattr(second, name) for name in names}
-        return replace(self, **both, failed=dict(Counter(self.failed) + Counter(second.failed)))
+        sums = {name: getattr(self, name) + getattr(second, name) for name in names}
+        return replace(self, **sums, failed=dict(Counter(self.failed) + Counter(second.failed)))
 
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
         """Return the exit code: the first that applies of 2 (USAGE), 1 (FAILED), 4 (NOT_JUDGED), 3 (LOSSY), 0 (OK)."""
@@ -134,7 +134,7 @@ class AuditSummary:
             return ExitCode.USAGE
         if any(self.failed.get(severity) for severity in gating):
             return ExitCode.FAILED
-        nothing = not self.n_drives and self.digest is not None  # another part may have judged all drives
+        is_empty = not self.n_drives and self.digest is not None  # another part may have judged all drives
         if (
             self.n_refused
             or self.quarantined
@@ -142,7 +142,7 @@ class AuditSummary:
             or self.off_map
             or self.missing_parts
             or self.undecided
-            or nothing
+            or is_empty
             or (strict and self.unknown)
         ):
             return ExitCode.NOT_JUDGED
@@ -156,8 +156,8 @@ class AuditSummary:
             severe = SEVERITIES[: SEVERITIES.index(fail_on) + 1]
             n = sum(self.findings.get(severity, 0) for severity in severe)
             bare = sum(self.failed.get(severity, 0) for severity in severe)
-            what = plural(n, "finding") if n else f"{plural(bare, 'failed verdict')} without a finding"
-            return f"{what} at or above severity {fail_on}"
+            subject = plural(n, "finding") if n else f"{plural(bare, 'failed verdict')} without a finding"
+            return f"{subject} at or above severity {fail_on}"
         if code is ExitCode.LOSSY:
             return "judged on lossy input: parts of a log were lost"
         if code is ExitCode.NOT_JUDGED:
@@ -165,8 +165,8 @@ class AuditSummary:
         return "failures do not gate" if fail_on == "never" else f"nothing failed at or above severity {fail_on}"
 
     def _reason_of_exit_not_judged(self) -> str:
-        if lost := self.n_refused + self.quarantined - self.copies_not_judged:
-            return f"{lost} of {plural(self.n_distinct_drives, 'drive')} could not be judged"
+        if n_lost := self.n_refused + self.quarantined - self.copies_not_judged:
+            return f"{n_lost} of {plural(self.n_distinct_drives, 'drive')} could not be judged"
         if self.beyond_limits:
             return f"{plural(self.beyond_limits, 'verdict')} in error: exceeded its limits"
         if self.off_map:
@@ -222,9 +222,7 @@ def summary_of_all_drives(con: duckdb.DuckDBPyConnection, n_reused: int) -> Audi
         possible=pc.sum(broken["n_possible"]).as_py() or 0,
         unknown=pc.sum(unknown_for["n"]).as_py() or 0,
         digest=tables_digest(con),
-        findings={
-            each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])
-        },
+        findings={row["severity"]: row["n_findings_sum"] for row in sorted(findings, key=lambda row: row["severity"])},
         broken=broken.slice(0, MOST_LISTED_RULES).to_pylist(),
         unknown_for=unknown_for.slice(0, MOST_LISTED_REASONS).to_pylist(),
         not_judged=not_judged.slice(0, MOST_LISTED_REASONS).to_pylist(),

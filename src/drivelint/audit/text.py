@@ -62,13 +62,13 @@ def _summary_lines(
     if audit_summary.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
-    found = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
+    counts = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
     sure = (
         f"examined: {audit_summary.possible} only possible"
         if audit_summary.robust
         else "not examined (--robustness examines it)"
     )
-    yield f"findings: {', '.join(found)}{_contact_phrases(audit_summary)}; certainty: {sure}"
+    yield f"findings: {', '.join(counts)}{_contact_phrases(audit_summary)}; certainty: {sure}"
     yield from _broken_rule_lines(audit_summary, out)
     yield from _unknown_reason_lines(audit_summary, out)
     yield from _unjudged_drive_lines(audit_summary, out)
@@ -112,8 +112,8 @@ def _unjudged_drive_lines(audit_summary: AuditSummary, out: str) -> Iterator[str
             parts = [plural(row["n"], "drive")] if row["n"] > 1 else []
             if not str(row["reason"]).startswith(str(row["log"])):
                 parts.append(f"such as {row['log']}" if parts else row["log"])
-            which = f" ({', '.join(parts)})" if parts else ""
-            yield f"  {row['status']}{which}: {row['reason']}"
+            drive_text = f" ({', '.join(parts)})" if parts else ""
+            yield f"  {row['status']}{drive_text}: {row['reason']}"
         if more := left - sum(row["n"] for row in audit_summary.not_judged):
             yield f"  and {more} more: drivelint sql {out} \"SELECT log, reason FROM receipts WHERE status <> 'judged'\""
 

@@ -82,11 +82,11 @@ def create_views_of_all_results(
         for table in (*TABLES, "receipts"):
             _fill_unpacked_rows(con, results, downloads, table, loose)
             con.execute(f"CREATE OR REPLACE TABLE loose_{prefix}{table} AS FROM _loose")
-            both = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
-            con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
+            query = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
+            con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {query}")
         con.execute(f"CREATE OR REPLACE VIEW {prefix}rules AS FROM {inner}rules")
         (n,) = con.execute(f"SELECT count(*) FROM {prefix}receipts").fetchone() or (0,)
-        told = json.loads(results.read(SUMMARY_FILE) or b"{}")
+        summary = json.loads(results.read(SUMMARY_FILE) or b"{}")
     except (duckdb.IOException, FileNotFoundError) as error:
         if results.read(MANIFEST) is not None:
             raise UsageError(
@@ -99,14 +99,16 @@ def create_views_of_all_results(
             f"a file there was changed since drivelint audit wrote it ({why}): audit the drives again into another --out"
         ) from error
     unfinished_parts = parts.unfinished_parts(results)
-    return AuditProgress(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))
+    return AuditProgress(
+        summary.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts)
+    )
 
 
 def n_results(results: ResultStore, downloads: Path) -> int:
     """Return the number of drives that have a result."""
     n = sum(1 for _ in results.names("receipts"))
-    for each in chunk_ids(results):
-        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), downloads)).num_rows
+    for chunk_id in chunk_ids(results):
+        n += pq.read_metadata(results.fetch(chunk_name("receipts", chunk_id), downloads)).num_rows
     return n
 
 
@@ -114,19 +116,22 @@ def _unpacked_receipts_with_rows(
     con: duckdb.DuckDBPyConnection, results: ResultStore, packed_prefix: str
 ) -> list[Receipt]:
     """Return the receipts that are in no chunk and whose rows exist."""
-    known = {key for (key,) in con.execute(f"SELECT key FROM {packed_prefix}receipts").fetchall()}
-    found = [
-        each for some in unpacked_receipts(results, only_whole_batches=False) for each in some if each.key not in known
+    packed_keys = {key for (key,) in con.execute(f"SELECT key FROM {packed_prefix}receipts").fetchall()}
+    receipts = [
+        receipt
+        for some in unpacked_receipts(results, only_whole_batches=False)
+        for receipt in some
+        if receipt.key not in packed_keys
     ]
     there = {name.rpartition("/")[2] for name in results.names(f"batches/{TABLES[-1]}")}
-    return [each for each in found if batch_name("", each.batch).rpartition("/")[2] in there]
+    return [receipt for receipt in receipts if batch_name("", receipt.batch).rpartition("/")[2] in there]
 
 
 def _fill_unpacked_rows(
     con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, unpacked: list[Receipt]
 ) -> None:
     """Create the table `_loose` with the rows of these receipts."""
-    receipts = pa.Table.from_pylist([receipt_row(each) for each in unpacked], schema=RECEIPT_SCHEMA)
+    receipts = pa.Table.from_pylist([receipt_row(receipt) for receipt in unpacked], schema=RECEIPT_SCHEMA)
     if table == "receipts" or not unpacked:
         con.register("_some", receipts if table == "receipts" else empty_tables()[table])
         con.execute("CREATE OR REPLACE TABLE _loose AS FROM _some")

@@ -84,24 +84,24 @@ class Judge:
 
     def _judge_drives(self, task: Task, results: ResultStore) -> list[Receipt]:
         receipts: list[Receipt] = []
-        read: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
+        unjudged: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
         for drive in task.drives:
-            key, found = self._find_receipt_or_read_drive(drive, task.run_id, results)
-            if isinstance(found, Receipt):
-                receipts.append(found)
-            elif key in read:  # the same log twice in one task is judged once
+            key, as_read = self._find_receipt_or_read_drive(drive, task.run_id, results)
+            if isinstance(as_read, Receipt):
+                receipts.append(as_read)
+            elif key in unjudged:  # the same log twice in one task is judged once
                 continue
             else:
-                read[key] = drive, found
+                unjudged[key] = drive, as_read
         # drives with the same content but different options have the same id: they cannot be judged together
-        while read:
+        while unjudged:
             ids: set[str] = set()
             part: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
-            for key, (_, found) in list(read.items()):
-                name = found.path.name if isinstance(found, RefusedLog) else found.trace.drive_id
+            for key, (_, as_read) in list(unjudged.items()):
+                name = as_read.path.name if isinstance(as_read, RefusedLog) else as_read.trace.drive_id
                 if name not in ids:
                     ids.add(name)
-                    part[key] = read.pop(key)
+                    part[key] = unjudged.pop(key)
             receipts += self._judge_distinct_drives(part, results)
         return receipts
 
@@ -134,12 +134,12 @@ class Judge:
         return bucket.download(bucket.BucketObject(drive.log, drive.size, drive.stamp), self._task_folder), options
 
     def _download_map(self, url: str) -> Path:
-        found = bucket.find_object(url)
-        if found is None:
+        remote = bucket.find_object(url)
+        if remote is None:
             raise MapError(f"map {url}: no such object: check the URL")
         home = self._worker_folder / "maps" / digest(url)
         home.mkdir(parents=True)
-        return bucket.download(found, home)
+        return bucket.download(remote, home)
 
     def _judge_distinct_drives(
         self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
@@ -149,30 +149,32 @@ class Judge:
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
         self._session.forget_judged_logs()
-        drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
+        drives = [outcome for _, outcome in part.values() if not isinstance(outcome, RefusedLog)]
         refusals: list[RefusedLog] = []
         if drives:
             judge_and_refuse_faulty(self._session, drives, refusals)
             self._session.judge_copies()
-        failed = {each.path: each for each in refusals}
-        told = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}
-        judged = collect.drives(self._con)
+        failed = {refusal.path: refusal for refusal in refusals}
+        tables = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}
+        drive_rows = collect.drives(self._con)
         rows: dict[str, list[pa.Table]] = {table: [] for table in TABLES}
         receipts: list[Receipt] = []
         for key, (drive, as_read) in sorted(part.items()):
-            found = as_read if isinstance(as_read, RefusedLog) else failed.get(as_read.trace.path, as_read)
-            if isinstance(found, RefusedLog):
-                path = found.path
-                one = {
-                    "verdicts": told["verdicts"].slice(0, 0),
-                    "findings": told["findings"].slice(0, 0),
-                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error), _log_sha256(path)),
+            outcome = as_read if isinstance(as_read, RefusedLog) else failed.get(as_read.trace.path, as_read)
+            if isinstance(outcome, RefusedLog):
+                path = outcome.path
+                rows_of_drive = {
+                    "verdicts": tables["verdicts"].slice(0, 0),
+                    "findings": tables["findings"].slice(0, 0),
+                    "drives": collect.unjudged_drive(path.stem, path.name, str(outcome.error), _log_sha256(path)),
                 }
             else:
-                name = found.trace.drive_id
-                one = {table: of.filter(pc.equal(of["drive_id"], name)) for table, of in told.items()}
-                one["drives"] = judged.filter(pc.equal(judged["drive_id"], name))
-            marked = {table: with_key(one[table], key, drive if table == "drives" else None) for table in TABLES}
+                name = outcome.trace.drive_id
+                rows_of_drive = {table: of.filter(pc.equal(of["drive_id"], name)) for table, of in tables.items()}
+                rows_of_drive["drives"] = drive_rows.filter(pc.equal(drive_rows["drive_id"], name))
+            marked = {
+                table: with_key(rows_of_drive[table], key, drive if table == "drives" else None) for table in TABLES
+            }
             for table, of in marked.items():
                 rows[table].append(of)
             receipts.append(self._receipt_of_rows(key, drive, marked))
@@ -224,13 +226,13 @@ def open_judge(settings: JudgeSettings) -> None:
 def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
     """Return rows of a check's table as rows of an audit's table: with `key` as first column; if `drive` is given, also with its log and
     tags."""
-    own = [pa.field("key", pa.string(), nullable=False)]
-    made = rows.add_column(0, own[0], pa.repeat(pa.scalar(key, pa.string()), rows.num_rows))
+    fields = [pa.field("key", pa.string(), nullable=False)]
+    table = rows.add_column(0, fields[0], pa.repeat(pa.scalar(key, pa.string()), rows.num_rows))
     if drive is not None:
-        made = made.append_column("log", pa.repeat(pa.scalar(drive.log, pa.string()), rows.num_rows))
+        table = table.append_column("log", pa.repeat(pa.scalar(drive.log, pa.string()), rows.num_rows))
         tags = pa.array([sorted(drive.tags.items())] * rows.num_rows, pa.map_(pa.string(), pa.string()))
-        made = made.append_column("tags", tags)
-    return made
+        table = table.append_column("tags", tags)
+    return table
 
 
 def receipt_fields(rows: Mapping[str, pa.Table], stable_rule_ids: pa.Array) -> dict[str, Any]:
@@ -262,8 +264,8 @@ def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
     content."""
     whole = hashlib.sha256()
     for table in TABLES:
-        kept = [name for name in rows[table].column_names if name not in {"log", "tags"}]
-        whole.update(_parquet_bytes(rows[table].select(kept)))
+        columns = [name for name in rows[table].column_names if name not in {"log", "tags"}]
+        whole.update(_parquet_bytes(rows[table].select(columns)))
     return whole.hexdigest()
 
 
@@ -279,23 +281,24 @@ def write_batch_and_return_valid_receipts(
     files = {batch_name(table, batch): _parquet_bytes(rows[table]) for table in TABLES}
     for name, content in files.items():
         results.write(name, content)
-    counted: list[Receipt] = []
+    valid: list[Receipt] = []
     for receipt in receipts:
-        own = replace(receipt, batch=batch, n_in_batch=len(receipts))
-        if results.create(receipt_name(own.key), own.to_json()):
-            counted.append(own)
+        own_receipt = replace(receipt, batch=batch, n_in_batch=len(receipts))
+        if results.create(receipt_name(own_receipt.key), own_receipt.to_json()):
+            valid.append(own_receipt)
             continue
-        there = Receipt.from_json(results.read(receipt_name(own.key)) or b"")
-        if there.rows_sha256 != own.rows_sha256:
+        there = Receipt.from_json(results.read(receipt_name(own_receipt.key)) or b"")
+        if there.rows_sha256 != own_receipt.rows_sha256:
             raise DriveLintError(
-                f"{own.log}: two workers got different results for one key ({own.key}): use one machine image for all workers"
+                f"{own_receipt.log}: two workers got different results for one key ({own_receipt.key}): "
+                "use one machine image for all workers"
             )
-        counted.append(replace(there, reused=True))
+        valid.append(replace(there, reused=True))
     if results.read(next(reversed(files))) is None:
         # Another audit has begun before the receipts existed, and has removed the files as leftovers of a killed worker.
         for name, content in files.items():
             results.write(name, content)
-    return counted
+    return valid
 
 
 def batch_name(table: str, batch: str) -> str:
@@ -328,5 +331,5 @@ def _parquet_bytes(rows: pa.Table) -> bytes:
 
 
 def _rows_per_value(rows: pa.Table, column: str) -> dict[str, int]:
-    counted = rows.group_by(column).aggregate([([], "count_all")]).to_pylist()
-    return {row[column]: row["count_all"] for row in sorted(counted, key=lambda row: str(row[column]))}
+    row_counts = rows.group_by(column).aggregate([([], "count_all")]).to_pylist()
+    return {row[column]: row["count_all"] for row in sorted(row_counts, key=lambda row: str(row[column]))}

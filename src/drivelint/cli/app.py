@@ -90,8 +90,8 @@ def demo(
     """
     from drivelint import demo
 
-    written = demo.write(place := option_values.folder_of_argument_or_option(folder, out, Path("demo")))
-    typer.echo(f"{place}: {len(written) - 1} drives and their road are there. Check them with:", err=True)
+    files = demo.write(place := option_values.folder_of_argument_or_option(folder, out, Path("demo")))
+    typer.echo(f"{place}: {len(files) - 1} drives and their road are there. Check them with:", err=True)
     typer.echo(demo.check_command(place, sys.argv[0]))
 
 
@@ -119,14 +119,14 @@ def inspect(
         rules_dirs=tuple(rules_dirs or ()),
         memory=option_values.parse_memory(memory),
     )
-    found = run_interruptible(lambda: inspection.inspect(request))
+    outcome = run_interruptible(lambda: inspection.inspect(request))
     if format_ == "json":
-        typer.echo(terminal_safe_json(inspection.to_json(found)))
+        typer.echo(terminal_safe_json(inspection.to_json(outcome)))
     else:
         from drivelint.inspect.text import render
 
-        print_rich(render(found, trace))
-    raise typer.Exit(int(inspection.exit_code(found)))
+        print_rich(render(outcome, trace))
+    raise typer.Exit(int(inspection.exit_code(outcome)))
 
 
 @app.command()
@@ -166,12 +166,12 @@ def convert(
         from drivelint.incident.clip import write_clip
 
         name, result = clip, folder
-        written = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY_BYTES))
+        converted_trace = run_interruptible(lambda: write_clip(request, name, result, DEFAULT_MEMORY_BYTES))
     else:
-        written = run_interruptible(lambda: converter.convert(request))
-    for note in written.notes:
+        converted_trace = run_interruptible(lambda: converter.convert(request))
+    for note in converted_trace.notes:
         typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
-    typer.echo(terminal_safe(converter.summary_text(written)))
+    typer.echo(terminal_safe(converter.summary_text(converted_trace)))
 
 
 app.command(cls=GroupedCommand)(watching.watch)
@@ -214,8 +214,8 @@ def main() -> NoReturn:
             f"{error}{_settings_hint(str(error))}", error.exit_code, has_lines=isinstance(error, ProblemLinesError)
         )
     except TyperException as error:
-        found = find_settings()
-        also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
+        settings = find_settings()
+        also = "" if settings is None else f" and {settings}{' in this folder' if settings.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # a prefix from the library
         _exit_with_error(f"{words} (see drivelint {_command_words_of_error(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
@@ -226,8 +226,8 @@ def main() -> NoReturn:
         import traceback
 
         if not ending_signals.is_any_recorded():
-            if (told := describe_machine_error(error)) is not None:
-                _exit_with_error(*told)
+            if (message_and_code := describe_machine_error(error)) is not None:
+                _exit_with_error(*message_and_code)
             streams.print_on_stderr(terminal_safe(traceback.format_exc().rstrip()))
             _exit_with_error(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
         code = ExitCode.INTERRUPTED  # for example an import that the signal ended
@@ -246,8 +246,8 @@ def _app_with_command(name: str) -> typer.Typer:
     if name == "docs":
         return app
     part = copy(app)
-    part.registered_commands = [each for each in app.registered_commands if _command_name(each) == name]
-    part.registered_groups = [each for each in app.registered_groups if each.name == name]
+    part.registered_commands = [entry for entry in app.registered_commands if _command_name(entry) == name]
+    part.registered_groups = [entry for entry in app.registered_groups if entry.name == name]
     return part if part.registered_commands or part.registered_groups else app
 
 
@@ -267,8 +267,8 @@ def _settings_hint(message: str) -> str:
     """Return the settings file in brackets if a message begins with an option that the command line lacks; '' otherwise."""
     option = message.partition(" ")[0].rstrip(":")
     is_given = any(word.partition("=")[0] == option for word in sys.argv)
-    found = None if is_given or not option.startswith("--") else find_settings()
-    return "" if found is None else f" (see {found})"
+    settings = None if is_given or not option.startswith("--") else find_settings()
+    return "" if settings is None else f" (see {settings})"
 
 
 _OPTIONS_REPLACING_MAP_SETTING: Final = frozenset({"--map", "--map-dir", "--help", "-h"})
@@ -283,7 +283,9 @@ def _default_options_of_settings_file() -> dict[str, Any]:
     name = "".join(sys.argv[1:2])
     if name not in {"check", "inspect", "convert"} or (file := find_settings()) is None:
         return {}
-    (callback,) = (each.callback for each in app.registered_commands if _command_name(each) == name and each.callback)
+    (callback,) = (
+        command.callback for command in app.registered_commands if _command_name(command) == name and command.callback
+    )
     of_command = signature(callback).parameters.keys() - (set() if name == "check" else {"out", "format_"})
     values = {param: value for param, value in settings_of_check(file).items() if param in of_command}
     map_file = (

@@ -157,16 +157,16 @@ def audit(
     pack = option_values.pack_request(evidence, sign, out, has_all_drives=shard is None and not claim)
     with bar(quiet) as progress:
         try:
-            counted = run_interruptible(lambda: audited(request, progress))
+            counts = run_interruptible(lambda: audited(request, progress))
         except KeyboardInterrupt:
             typer.echo(f"drivelint: {_stored_results_sentence(out)}", err=True)
             raise
-    code, told, why = counted.exit_code(exit_codes.fail_on, strict=exit_codes.strict), list[str](), ""
+    code, lines, why = counts.exit_code(exit_codes.fail_on, strict=exit_codes.strict), list[str](), ""
     if gate is not None or min_judged is not None:
         result = gated.apply_gate(out, gate)
-        code, told = gated.exit_code(result, counted), list(gated.gate_lines(result))
+        code, lines = gated.exit_code(result, counts), list(gated.gate_lines(result))
         why = gated.exit_reason(result, code)
-    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=exit_codes.fail_on, gate_reason=why)))
+    typer.echo(terminal_safe(summary_text(counts, out, code, lines, fail_on=exit_codes.fail_on, gate_reason=why)))
     if pack is not None:
         packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(int(code))
@@ -186,8 +186,8 @@ def _stored_results_sentence(out: str) -> str:
         return f"results so far stay in {terminal_safe_line(out)}: the same command continues with the rest"
     if not n:
         return f"no drive has a result in {terminal_safe_line(out)} yet, because drives are judged in groups: the same command begins again"
-    kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {terminal_safe_line(out)}"
-    return f"{kept}: the same command continues with the rest"
+    sentence = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {terminal_safe_line(out)}"
+    return f"{sentence}: the same command continues with the rest"
 
 
 def merge(
@@ -203,9 +203,9 @@ def merge(
     from drivelint.audit.text import summary_text
 
     with bar(False) as progress:
-        counted = run_interruptible(lambda: merged(dest, progress, delta))
-    code = counted.exit_code("never", strict=False)
-    typer.echo(terminal_safe(summary_text(counted, dest, code, fail_on="never")))
+        counts = run_interruptible(lambda: merged(dest, progress, delta))
+    code = counts.exit_code("never", strict=False)
+    typer.echo(terminal_safe(summary_text(counts, dest, code, fail_on="never")))
     raise typer.Exit(int(code))
 
 

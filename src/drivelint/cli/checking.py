@@ -99,7 +99,7 @@ def check(arguments: CheckCommandArguments) -> None:
                 gate_inputs = GateInputs.from_files(
                     baseline, to_path(arguments.waivers), settings_file, day, out, confidence=arguments.confidence
                 )
-                judged = run_interruptible(
+                checked_logs = run_interruptible(
                     lambda: _judge(
                         settings,
                         arguments.jobs,
@@ -113,7 +113,7 @@ def check(arguments: CheckCommandArguments) -> None:
         except KeyboardInterrupt as stop:
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
-        result = gate_and_write(judged)
+        result = gate_and_write(checked_logs)
         stdout, code = (
             _stdout_text(result, arguments.format_, out, verbose=arguments.verbose),
             int(exit_status(result).code),
@@ -136,8 +136,8 @@ def _note_peak_memory(progress: Progress) -> None:
     """Note how much memory this process took, not counting processes that it started."""
     from drivelint.engine.memory import format_bytes, peak_bytes
 
-    if (most := peak_bytes()) is not None:
-        progress.note(f"the process took at most {format_bytes(most)} of memory, including memory outside the database")
+    if (peak := peak_bytes()) is not None:
+        progress.note(f"the process took at most {format_bytes(peak)} of memory, including memory outside the database")
 
 
 def _name_map_beside_logs(traces: Sequence[str], result: Result) -> None:
@@ -147,8 +147,8 @@ def _name_map_beside_logs(traces: Sequence[str], result: Result) -> None:
     if result.drives["map_name"].drop_null():
         return
     if maps := [terminal_safe_line(str(path)) for path in maps_beside_traces(traces)]:
-        others = f" ({plural(len(maps) - 1, 'other map')} there)" if len(maps) > 1 else ""
-        streams.print_on_stderr(f"drivelint: a map lies beside the logs: judge them on it with --map {maps[0]}{others}")
+        more = f" ({plural(len(maps) - 1, 'other map')} there)" if len(maps) > 1 else ""
+        streams.print_on_stderr(f"drivelint: a map lies beside the logs: judge them on it with --map {maps[0]}{more}")
 
 
 def _find_and_print_settings_file(*, quiet: bool) -> Path | None:
@@ -209,5 +209,7 @@ def _stdout_text(result: Result, format_: Format, out: Path | None, *, verbose: 
 
     if format_ == "json":
         return terminal_safe_json(summary.render(result).decode())
-    told = result_on_one_line(result)
-    return rich_text(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))
+    shown_result = result_on_one_line(result)
+    return rich_text(
+        lambda width: terminal.render(shown_result, None if out is None else str(out), width, verbose=verbose)
+    )

@@ -29,9 +29,9 @@ def write_reports_of_check(folder: Path, formats: Sequence[str], base_url: str |
         raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
     result = load_result(folder)
     warn_of_partial_result(folder, result)
-    for each in dict.fromkeys(formats):
-        name, render = REPORT_FORMATS[each]
-        add_file(folder, name, markdown.render(result, base_url) if each == "markdown" else render(result))
+    for format_name in dict.fromkeys(formats):
+        name, render = REPORT_FORMATS[format_name]
+        add_file(folder, name, markdown.render(result, base_url) if format_name == "markdown" else render(result))
         typer.echo(terminal_safe_line(str(folder / name)))
 
 
@@ -44,11 +44,9 @@ def write_incident_sheet(request: IncidentRequest) -> None:
 
     for path in run_interruptible(lambda: write_sheet(request)):
         typer.echo(terminal_safe_line(str(path)))
-    if others := other_drives_with_named_finding(request):
+    if other_drives := other_drives_with_named_finding(request):
         name = request.name
-        message = (
-            f"{name} also fits {name_list(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
-        )
+        message = f"{name} also fits {name_list(other_drives)}: the sheet is about the worst; choose another with {name}@DRIVE"
         typer.echo(f"drivelint: {terminal_safe_line(message)}", err=True)
 
 

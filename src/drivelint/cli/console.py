@@ -34,12 +34,12 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     With `interrupt`, the first Ctrl-C calls `interrupt` repeatedly until the job ends; a second Ctrl-C raises `KeyboardInterrupt`.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    with ending_signals.count_signals_only() as asked:
+    with ending_signals.count_signals_only() as n_signals:
         is_told = False
         while not running.done():
-            if asked() > (interrupt is not None):
+            if n_signals() > (interrupt is not None):
                 raise KeyboardInterrupt
-            if interrupt is not None and asked():
+            if interrupt is not None and n_signals():
                 if not is_told:
                     typer.echo(
                         "drivelint: interrupted: finishing what is begun; press Ctrl-C again to stop at once and keep nothing",
@@ -82,8 +82,8 @@ def say_earlier_folder_on_failure(out: Path | None) -> Iterator[None]:
 def say_kept_drives(drive_statuses: Sequence[str], out: Path | None) -> None:
     """Print how many drives an interrupted check has judged and kept."""
     where = "" if out is None else f" in {terminal_safe_line(str(out))}"
-    kept = f"kept {drive_statuses.count('judged')} of {plural(len(drive_statuses), 'drive')}{where}"
-    typer.echo(f"drivelint: {kept}", err=True)
+    sentence = f"kept {drive_statuses.count('judged')} of {plural(len(drive_statuses), 'drive')}{where}"
+    typer.echo(f"drivelint: {sentence}", err=True)
 
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:

@@ -82,15 +82,15 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     from drivelint.guide.site import Command
 
     if hasattr(command, "commands"):
-        for word, each in command.commands.items():
-            yield from _commands(each, f"{name} {word}")
+        for word, subcommand in command.commands.items():
+            yield from _commands(subcommand, f"{name} {word}")
         return
     about = typer.Context(command, info_name=name)
-    said: dict[str, list[tuple[str, str]]] = {"argument": [], "option": []}
+    texts_by_kind: dict[str, list[tuple[str, str]]] = {"argument": [], "option": []}
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
             words, meaning = record
             # remove the Python type
-            said[param.param_type_name].append((words.partition(" <")[0], meaning))
+            texts_by_kind[param.param_type_name].append((words.partition(" <")[0], meaning))
     usage = " ".join([name, *command.collect_usage_pieces(about)])
-    yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))
+    yield Command(usage, command.help or "", tuple(texts_by_kind["argument"]), tuple(texts_by_kind["option"]))

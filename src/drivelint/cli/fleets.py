@@ -36,8 +36,8 @@ def write_report_of_audit(
     from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVE_PAGES
 
     if to not in (*page.FORMATS, *gated.FORMATS):
-        known = name_list([*page.FORMATS, *gated.FORMATS])
-        raise UsageError(f"--to {to}: an audit can be reported as {known}; the other formats are for a check")
+        formats = name_list([*page.FORMATS, *gated.FORMATS])
+        raise UsageError(f"--to {to}: an audit can be reported as {formats}; the other formats are for a check")
     if to in gated.FORMATS:
         if by or baseline is not None or drive_pages is not None or moments is not None:
             raise UsageError(
@@ -50,7 +50,7 @@ def write_report_of_audit(
         return
     if (drive_pages is not None or moments is not None) and to != "html":
         raise UsageError("--drive-pages and --moments are for --to html: the other formats are one file")
-    most = (
+    n_drive_pages = (
         DEFAULT_N_DRIVE_PAGES
         if drive_pages is None
         else option_values.parse_number_or_all("--drive-pages", drive_pages)
@@ -59,7 +59,7 @@ def write_report_of_audit(
     with progress(quiet) as listener:
         name, audit = run_interruptible(
             lambda: page.write_fleet_page(
-                dest, to, tuple(by), base, most_drives=most, most_moments=moments, progress=listener
+                dest, to, tuple(by), base, most_drives=n_drive_pages, most_moments=moments, progress=listener
             )
         )
     _print_warning_of_audit(audit)
@@ -73,23 +73,23 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
     from drivelint.fleet_report.difference import difference, write_finding_rows
     from drivelint.gate.descriptions import MAX_LINES
 
-    most = difference_text.MAX_JSON_FINDINGS if format_ == "json" else MAX_LINES
+    n_findings = difference_text.MAX_JSON_FINDINGS if format_ == "json" else MAX_LINES
 
     def print_difference() -> None:
         with open_two_audits(base, new) as (con, earlier, later):
             for audit in (earlier, later):
                 _print_warning_of_audit(audit)
-            found = difference(con, later, earlier, most)
+            changes = difference(con, later, earlier, n_findings)
             if rows is not None:
                 write_finding_rows(con, rows)
-        least = difference_text.gating_severity(found, fail_on)
+        least = difference_text.gating_severity(changes, fail_on)
         if format_ == "json":
-            typer.echo(terminal_safe_json(difference_text.to_json(found, least)))
+            typer.echo(terminal_safe_json(difference_text.to_json(changes, least)))
         elif format_ == "markdown":
-            typer.echo(difference_text.to_text(found, least, markdown=True))
+            typer.echo(difference_text.to_text(changes, least, markdown=True))
         else:
-            typer.echo(terminal_safe(difference_text.to_text(found, least)))
-        raise typer.Exit(int(difference_text.exit_code(found, least)))
+            typer.echo(terminal_safe(difference_text.to_text(changes, least)))
+        raise typer.Exit(int(difference_text.exit_code(changes, least)))
 
     run_interruptible(print_difference)
 
@@ -112,9 +112,9 @@ def what_if(
     from drivelint.fleet_report.audit_views import path_or_url
     from drivelint.fleet_report.what_if import to_json, to_text, what_if_in_audit
 
-    asked = run_interruptible(lambda: what_if_in_audit(path_or_url(dest), setting, by))
-    typer.echo(terminal_safe_json(to_json(asked)) if format_ == "json" else terminal_safe(to_text(asked)))
-    raise typer.Exit(int(asked.exit_code))
+    answer = run_interruptible(lambda: what_if_in_audit(path_or_url(dest), setting, by))
+    typer.echo(terminal_safe_json(to_json(answer)) if format_ == "json" else terminal_safe(to_text(answer)))
+    raise typer.Exit(int(answer.exit_code))
 
 
 def trend(
@@ -133,14 +133,14 @@ def trend(
     def warn_on_stderr(warning: str) -> None:
         typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
-    found = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn_on_stderr))
+    result = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn_on_stderr))
     if format_ == "json":
-        typer.echo(terminal_safe_json(to_json(found)))
+        typer.echo(terminal_safe_json(to_json(result)))
     elif format_ == "markdown":
-        typer.echo(to_text(found, markdown=True))
+        typer.echo(to_text(result, markdown=True))
     else:
-        typer.echo(terminal_safe(to_text(found)))
-    raise typer.Exit(int(found.exit_code))
+        typer.echo(terminal_safe(to_text(result)))
+    raise typer.Exit(int(result.exit_code))
 
 
 def _print_warning_of_audit(audit: Audit) -> None:

@@ -11,8 +11,8 @@ from drivelint.options.declaration import declared_options
 
 _OPTIONS_BY_HEADING: Final = {
     "Watching": ("halt_on", "warn", "advise", "on", "serve", "replay", "window", "every", "idle"),
-    "Input": tuple(each.field for each in declared_options(DriveArguments)),
-    "Rules": tuple(each.field for each in declared_options(RuleArguments)),
+    "Input": tuple(option.field for option in declared_options(DriveArguments)),
+    "Rules": tuple(option.field for option in declared_options(RuleArguments)),
     "Gate": ("fail_on", "strict", "require", "min_judged", "confidence", "baseline", "waivers", "today"),
     "Output": (
         "out",

@@ -38,21 +38,21 @@ def option(flag: str, metavar: str | None, help_text: str, **settings: Any) -> A
 
 def declared_info(declared: DeclaredOption) -> Any:
     """Return the argument or option of Typer for a declared option."""
-    said = declared.option
+    option = declared.option
     if declared.is_positional:
-        return argument(said.metavar or "", said.help)
+        return argument(option.metavar or "", option.help)
     return typer.Option(
         *declared.flags,
-        metavar=said.metavar,
-        help=said.help,
-        min=said.minimum,
-        max=said.maximum,
-        envvar=said.environment_variable,
-        autocompletion=completion.rule_ids if said.selects_rules else None,
+        metavar=option.metavar,
+        help=option.help,
+        min=option.minimum,
+        max=option.maximum,
+        envvar=option.environment_variable,
+        autocompletion=completion.rule_ids if option.selects_rules else None,
     )
 
 
-_OPTIONS_OF_CHECK: Final = {each.name: each for each in declared_options(CheckCommandArguments)}
+_OPTIONS_OF_CHECK: Final = {option.name: option for option in declared_options(CheckCommandArguments)}
 
 
 def _option_of_check(name: str) -> Any:
@@ -88,16 +88,16 @@ class DeclaredCommand:
 
     @property
     def _groups(self) -> dict[str, type[Arguments]]:
-        kinds = {name: each.annotation for name, each in self._parameters_of_command.items()}
+        kinds = {name: parameter.annotation for name, parameter in self._parameters_of_command.items()}
         return {name: kind for name, kind in kinds.items() if isinstance(kind, type) and issubclass(kind, Arguments)}
 
     @property
     def __signature__(self) -> Signature:
         """Return the signature that Typer reads."""
         parameters: list[Parameter] = []
-        for name, each in self._parameters_of_command.items():
+        for name, parameter in self._parameters_of_command.items():
             if name not in self._groups:
-                parameters.append(each.replace(kind=Parameter.KEYWORD_ONLY))
+                parameters.append(parameter.replace(kind=Parameter.KEYWORD_ONLY))
                 continue
             parameters += [
                 Parameter(
@@ -113,10 +113,10 @@ class DeclaredCommand:
     @property
     def __annotations__(self) -> dict[str, Any]:  # type: ignore[override]
         """Return the types that Typer reads."""
-        return {name: each.annotation for name, each in self.__signature__.parameters.items()}
+        return {name: parameter.annotation for name, parameter in self.__signature__.parameters.items()}
 
     def __call__(self, **values: Any) -> None:
         """Run the command with the values of its options."""
         for name, group in self._groups.items():
-            values[name] = group(**{each.name: values.pop(each.field) for each in declared_options(group)})
+            values[name] = group(**{declared.name: values.pop(declared.field) for declared in declared_options(group)})
         self._command(**values)

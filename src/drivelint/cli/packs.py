@@ -70,7 +70,9 @@ def pack(
     """
     from drivelint.pack import DEFAULT_PACKED_FINDINGS, PackRequest
 
-    most = DEFAULT_PACKED_FINDINGS if findings is None else option_values.parse_number_or_all("--findings", findings)
+    n_findings = (
+        DEFAULT_PACKED_FINDINGS if findings is None else option_values.parse_number_or_all("--findings", findings)
+    )
     request = PackRequest(
         folder,
         out,
@@ -81,7 +83,7 @@ def pack(
         option_values.parse_pack_date(date),
         timestamp,
         overwrite,
-        most,
+        n_findings,
     )
     write_and_print_summary(request)
 
@@ -93,25 +95,25 @@ def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) ->
     from drivelint.pack.contents import phrase_on_findings_with_sql
     from drivelint.result.load import load_result
 
-    told = run_interruptible(lambda: write_pack(request))
-    findings, left = told["findings"], told.get("findings_left_out")
+    summary = run_interruptible(lambda: write_pack(request))
+    findings, left = summary["findings"], summary.get("findings_left_out")
     if left is not None:  # an audit
-        counted = packed_findings_text(request.out, told)
+        findings_text = packed_findings_text(request.out, summary)
     else:
-        counted = phrase_on_findings_with_sql(load_result(request.folder).findings.to_pylist(), findings)
+        findings_text = phrase_on_findings_with_sql(load_result(request.folder).findings.to_pylist(), findings)
     signed = "signed" if request.key else "not signed"
     less = f"; {plural(left, 'less severe finding')} left out (drivelint pack --findings all)" if left else ""
-    copies = told.get("n_copies")
+    copies = summary.get("n_copies")
     once = f"; {plural(copies, 'log')} with the content of another log: counted once" if copies else ""
-    pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
+    pages = sum(name.endswith(".html") for name in summary.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
-    said = f"{signed}; {counted}{less}{once}{sheets}"
-    typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=on_stderr)
+    sentence = f"{signed}; {findings_text}{less}{once}{sheets}"
+    typer.echo(f"{terminal_safe_line(str(request.out))}: {sentence}", err=on_stderr)
     for finding in findings:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: no SQL, because {finding['without_sql_because']}"
             typer.echo(terminal_safe_line(why), err=on_stderr)
-    if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
+    if left_out := [name for name in summary["left_out"] if name.startswith("incidents/")]:
         why = "sheets of findings that the result does not contain, and PDFs whose page is missing or would be written differently now"
         typer.echo(terminal_safe_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=on_stderr)
 
@@ -158,11 +160,11 @@ def verify(
         folder, key, tuple(traces or ()), map_, timestamp_root,
         require_signature, None if not_before is None else option_values.parse_day("--not-before", not_before),
     )  # fmt: skip
-    found = run_interruptible(lambda: verified(request))
-    for note in found.notes:
+    verification = run_interruptible(lambda: verified(request))
+    for note in verification.notes:
         typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
-    for problem in found.problems:
+    for problem in verification.problems:
         typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}{explanation_text(problem)}")
-    if not found.problems:
-        typer.echo(terminal_safe(found.sentence))
-    raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))
+    if not verification.problems:
+        typer.echo(terminal_safe(verification.sentence))
+    raise typer.Exit(int(ExitCode.FAILED if verification.problems else ExitCode.OK))

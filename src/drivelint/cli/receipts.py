@@ -56,7 +56,7 @@ class OutputPathTest:
         name = path[len(self._root) + 1 :].replace(os.sep, "/")
         if name in _SUBFOLDERS_OF_OUTPUTS:
             with suppress(OSError):
-                return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
+                return all(self(os.path.join(path, entry)) for entry in os.listdir(path))  # noqa: PTH118, PTH208
         name = name.removeprefix(f"{folder.EARLIER_RESULT_FOLDER}/")
         return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILE_GLOBS)
 
@@ -84,12 +84,12 @@ class StoredRunOfCheck:
             and cache_folder() is not None
             and not self._contains_outputs(self._named)
         ):
-            counted = {name: value for name, value in options.items() if name not in _CHECK_OPTIONS_WITHOUT_EFFECT}
+            effective = {name: value for name, value in options.items() if name not in _CHECK_OPTIONS_WITHOUT_EFFECT}
             places = {
                 name: os.path.realpath(options[name]) for name in ("out", "baseline") if options[name] is not None
             }
             places |= {} if settings is None else {"settings": os.path.realpath(settings)}
-            self._key = receipt_key({**counted, "places": places})
+            self._key = receipt_key({**effective, "places": places})
 
     def repeat_earlier_run(self) -> store.Receipt | None:
         """Write the files of an earlier run with the same inputs, and return its receipt; None without such a run.
@@ -98,18 +98,18 @@ class StoredRunOfCheck:
         """
         if self._key is None:
             return None
-        with store.open_receipt(self._key) as found:
-            if found is None or found.receipt.day not in {None, self._day}:
+        with store.open_receipt(self._key) as earlier:
+            if earlier is None or earlier.receipt.day not in {None, self._day}:
                 return None
-            if not found.receipt.inputs.are_unchanged(self._is_output):
+            if not earlier.receipt.inputs.are_unchanged(self._is_output):
                 return None
             if self._out is not None:
-                self._write_files_of_receipt(found, self._out)
+                self._write_files_of_receipt(earlier, self._out)
             if not self._quiet:
                 notes = NotePrinter()
-                for text in (*found.receipt.notes, _REPEATED_RESULT_NOTE):
+                for text in (*earlier.receipt.notes, _REPEATED_RESULT_NOTE):
                     notes.note(text)
-            return found.receipt
+            return earlier.receipt
 
     def _write_files_of_receipt(self, receipt: store.OpenedReceipt, out: Path) -> None:
         overwrite, reports = self._overwrite, list(REPORT_FILES.values())
@@ -161,5 +161,5 @@ class StoredRunOfCheck:
 
 def _depends_on_inputs_only(result: Result) -> bool:
     """Return whether a result is complete and depends only on its inputs: a drive or rule in error may succeed next time."""
-    judged = set(result.drives["status"].to_pylist()) <= {"judged"}
-    return judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()
+    is_judged = set(result.drives["status"].to_pylist()) <= {"judged"}
+    return is_judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()

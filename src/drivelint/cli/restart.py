@@ -56,11 +56,11 @@ class Restart:
         temporary.remove_all()
         if self._work is not None:
             shutil.rmtree(self._work, ignore_errors=True)
-        known = {**self._known, task: {**self.exceeded_limits(task), rule_id: excess}}
+        excesses = {**self._known, task: {**self.exceeded_limits(task), rule_id: excess}}
         self._progress.release_terminal()
         sys.stderr.flush()
         os.execve(  # noqa: S606 - the same command
             sys.executable,
             [sys.executable, *sys.orig_argv[1:]],
-            {**os.environ, UNSTOPPABLE_RULES_VARIABLE: json.dumps(known)},
+            {**os.environ, UNSTOPPABLE_RULES_VARIABLE: json.dumps(excesses)},
         )

@@ -101,9 +101,9 @@ def report(
             raise UsageError(
                 f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are only for a check"
             )
-        for each in dict.fromkeys(formats):
+        for format_name in dict.fromkeys(formats):
             fleets.write_report_of_audit(
-                dest, each, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet
+                dest, format_name, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet
             )
     elif of_an_audit:
         raise UsageError(
@@ -215,8 +215,8 @@ def explain(
         option_values.parse_memory(memory),
     )
     checks.warn_of_partial_result(folder, load_result(folder))
-    found = run_interruptible(lambda: explained(request))
+    explanation = run_interruptible(lambda: explained(request))
     if format_ == "json":
-        typer.echo(terminal_safe_json(to_json(found)))
+        typer.echo(terminal_safe_json(to_json(explanation)))
     else:
-        print_rich(lambda width: render(found, width))
+        print_rich(lambda width: render(explanation, width))

@@ -31,8 +31,8 @@ def list_(
     from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
 
-    known = load_rules(tuple(rules_dir or ()))
-    rules = select_rules(known, selectors, ()) if selectors else list(known.values())
+    rules_by_id = load_rules(tuple(rules_dir or ()))
+    rules = select_rules(rules_by_id, selectors, ()) if selectors else list(rules_by_id.values())
     if format_ == "json":
         typer.echo(terminal_safe_json(rules_text.rules_as_json(rules)))
     else:
@@ -135,12 +135,12 @@ def run_tests(
 
     test = commands.mutation_test if mutate else commands.case_test
     out = None if sys.stdout.isatty() else sys.stdout  # None: printed above the progress bar on the terminal
-    with progress(quiet=not mutate) as shown:
-        shown.stage("judging mutants")
+    with progress(quiet=not mutate) as bar:
+        bar.stage("judging mutants")
 
         def say(text: str) -> None:
             typer.echo(terminal_safe(text), file=out)
-            shown.advance()
+            bar.advance()
 
         over, names = Event(), tuple(only or ())
         if tables:

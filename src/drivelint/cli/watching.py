@@ -219,19 +219,19 @@ def _watch_and_check(
         # reads rules and map, so that an error in them ends the watch before the source or COMMAND starts
         WindowJudge(settings) as judge,
         open_server(settings.serve, judge.rules, settings.allow_origin) as server,
-        source_of_watch(settings, progress) as opened,
-        Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,
+        source_of_watch(settings, progress) as source,
+        Watch(settings, source, emit, interruption.of_watch, server, judge=judge) as watch,
     ):
         progress.stage("watching")
         watched = watch.watch()
-        opened.close()
-        for text in opened.notes():
+        source.close()
+        for text in source.notes():
             emit(messages.note(text))
         progress.note(watched.timing_text())
         interruption.switch_to_check()
         result = check_recording(
             settings,
-            opened.recording,
+            source.recording,
             work,
             watch,
             folder=folder,
@@ -240,8 +240,8 @@ def _watch_and_check(
         )
         if interruption.of_check.requested and not result.interrupted:
             emit(messages.note("interrupted: the test of how sure the findings are was not finished"))
-        told = report_outcome_and_return_counts_text(result, watch, emit)
+        counts_text = report_outcome_and_return_counts_text(result, watch, emit)
         if settings.out is not None:
             write(result, settings.out, work, overwrite=overwrite)
-        progress.note(told)
+        progress.note(counts_text)
         return int(exit_status(result).code)

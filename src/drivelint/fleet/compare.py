@@ -48,10 +48,10 @@ class Comparison(NamedTuple):
 
     def counts_by_standing(self) -> Counter[str]:
         """Return standing -> number of findings."""
-        found: Counter[str] = Counter()
-        for each in self.differences:
-            found[each.standing] += each.n
-        return found
+        counts: Counter[str] = Counter()
+        for difference in self.differences:
+            counts[difference.standing] += difference.n
+        return counts
 
 
 def compare(
@@ -88,13 +88,16 @@ def compare(
         "margin_tolerance": f"{UNCHANGED_MARGIN_TOLERANCE!r}",
         "interval_tolerance_s": f"{UNCHANGED_INTERVAL_TOLERANCE_S!r}",
     }
-    made = statement("fleet/difference", base=base, new=new, **tolerances)
-    con.execute(made, {"base_tool": tools[0], "new_tool": tools[1]})
+    sql = statement("fleet/difference", base=base, new=new, **tolerances)
+    con.execute(sql, {"base_tool": tools[0], "new_tool": tools[1]})
     rows = con.execute(statement("fleet/differences")).fetchall()
     counts = (DifferenceCount(r, p, s, tuple(causes), tuple(unknown), n) for r, p, s, causes, unknown, n in rows)
-    both = _count_rows(con, "same_drive")
+    n_common = _count_rows(con, "same_drive")
     return Comparison(
-        tuple(counts), both, _count_rows(con, f"{base}drives") - both, _count_rows(con, f"{new}drives") - both
+        tuple(counts),
+        n_common,
+        _count_rows(con, f"{base}drives") - n_common,
+        _count_rows(con, f"{new}drives") - n_common,
     )
 
 

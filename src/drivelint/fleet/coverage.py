@@ -76,8 +76,10 @@ class Coverage:
 
     def situations_never_known(self) -> list[str]:
         """Return the names of situations, such as `weather`, whose value is not known for any drive."""
-        told = {each.situation for each in self.situations if each.egos and each.value is not None}
-        return sorted({each.situation for each in self.situations} - told)
+        known_names = {
+            situation.situation for situation in self.situations if situation.egos and situation.value is not None
+        }
+        return sorted({situation.situation for situation in self.situations} - known_names)
 
 
 def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
@@ -88,7 +90,9 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
     parts = {"subject": counted_egos_sql(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
     rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
-    situations = [each for name, values in SITUATIONS.items() for each in _situation_coverage(con, of, name, values)]
+    situations = [
+        situation for name, values in SITUATIONS.items() for situation in _situation_coverage(con, of, name, values)
+    ]
     return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), UNAVAILABLE_SITUATIONS)
 
 
@@ -103,7 +107,7 @@ def _situation_coverage(
         statement("fleet/situation", of=of, subject=counted_egos_sql(of, value=situation_sql(name))),
         parameters_of_tag(name),
     ).fetchall()
-    told = {row[0]: SituationCoverage(name, *row) for row in rows}
-    order = dict.fromkeys([*values, *(value for value in told if value is not None)])
-    found = [told.get(value, SituationCoverage(name, value)) for value in order]
-    return [*found, told[None]] if None in told else found
+    coverage_by_value = {row[0]: SituationCoverage(name, *row) for row in rows}
+    order = dict.fromkeys([*values, *(value for value in coverage_by_value if value is not None)])
+    coverages = [coverage_by_value.get(value, SituationCoverage(name, value)) for value in order]
+    return [*coverages, coverage_by_value[None]] if None in coverage_by_value else coverages

@@ -36,14 +36,14 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     that have several values. In `verdicts` and `findings`, `key` is the key of the row in `drives`, and `result_key` the key of the
     original result.
     """
-    counted = f"{COUNTED_PREFIX}{of}"
+    prefix = f"{COUNTED_PREFIX}{of}"
     first = statement("fleet/first_result")
-    con.execute(statement("fleet/counted_key", of=of, counted=counted, first=first))
-    con.execute(statement("fleet/counted_drives", of=of, counted=counted))
+    con.execute(statement("fleet/counted_key", of=of, counted=prefix, first=first))
+    con.execute(statement("fleet/counted_drives", of=of, counted=prefix))
     for table, same in _COLUMNS_THAT_IDENTIFY_ROWS.items():
-        con.execute(statement("fleet/counted_rows", of=of, counted=counted, table=table, same=same))
-    con.execute(f"CREATE OR REPLACE TEMP VIEW {counted}rules AS FROM {of}rules")
-    return counted
+        con.execute(statement("fleet/counted_rows", of=of, counted=prefix, table=table, same=same))
+    con.execute(f"CREATE OR REPLACE TEMP VIEW {prefix}rules AS FROM {of}rules")
+    return prefix
 
 
 def counted_egos_sql(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:

@@ -39,7 +39,7 @@ class RateTest(NamedTuple):
     @property
     def ratio(self) -> float | None:
         """The new rate divided by the base's rate; infinite if the base has no event."""
-        base, new = (each.rate or 0.0 for each in self.rates)
+        base, new = (rate.rate or 0.0 for rate in self.rates)
         return inf if base == 0 else new / base
 
     @property
@@ -70,7 +70,7 @@ class RateChange:
     @property
     def is_significant(self) -> bool:
         """Whether any test reports a difference. The probability of any false report for all rules together is at most 5 %."""
-        return any(each.is_significant for each in self.tests)
+        return any(test.is_significant for test in self.tests)
 
     @property
     def tests(self) -> list[RateTest]:
@@ -78,14 +78,14 @@ class RateChange:
         if self.base is None or self.new is None:
             return []
         sides = (self.base, self.new)
-        found = []
+        results = []
         if self.p_value is not None and self.corrected is not None:
-            told = [(each.findings, each.km, each.per_100km) for each in sides]
-            found.append(_rate_test("100 km", told, self.p_value, self.corrected))
+            numbers = [(side.findings, side.km, side.per_100km) for side in sides]
+            results.append(_rate_test("100 km", numbers, self.p_value, self.corrected))
         if self.occasion_p_value is not None and self.occasion_corrected is not None:
-            told = [(each.occasions_failed, float(each.occasions), each.per_occasion) for each in sides]
-            found.append(_rate_test("occasion", told, self.occasion_p_value, self.occasion_corrected))
-        return found
+            numbers = [(side.occasions_failed, float(side.occasions), side.per_occasion) for side in sides]
+            results.append(_rate_test("occasion", numbers, self.occasion_p_value, self.occasion_corrected))
+        return results
 
 
 def _rate_test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, corrected: float) -> RateTest:
@@ -118,9 +118,9 @@ def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
     values: dict[tuple[Any, str], float] = {}
     for name in names:
         sides = had.get(name), has.get(name)
-        for per, found in (("km", _p_value_per_km(*sides)), ("occasion", _p_value_per_occasion(*sides))):
-            if found is not None:
-                values[name, per] = found
+        for per, p_value in (("km", _p_value_per_km(*sides)), ("occasion", _p_value_per_occasion(*sides))):
+            if p_value is not None:
+                values[name, per] = p_value
     able = [key for key in values if _has_any_event(had[key[0]], has[key[0]], key[1])]
     corrected = dict(zip(able, holm_corrected([values[key] for key in able]), strict=True))
     return [
@@ -157,5 +157,5 @@ def _p_value_per_occasion(base: Rate | None, new: Rate | None) -> float | None:
 
     if base is None or new is None or not base.occasions or not new.occasions:
         return None
-    table = [[each.occasions_failed, each.occasions - each.occasions_failed] for each in (base, new)]
+    table = [[rate.occasions_failed, rate.occasions - rate.occasions_failed] for rate in (base, new)]
     return float(fisher_exact(table)[1])

@@ -102,8 +102,8 @@ class Rate:
 
         It uses `events_sure`: a possible finding may not have happened, and one contact must not count twice.
         """
-        found = intervals.poisson_rate(self.events_sure, (self.km + self.km_unknown) / 100)
-        return None if found.rate is None else found.low
+        rate = intervals.poisson_rate(self.events_sure, (self.km + self.km_unknown) / 100)
+        return None if rate.rate is None else rate.low
 
 
 def rates(

@@ -56,12 +56,12 @@ class WhatIf(NamedTuple):
     @property
     def flips(self) -> tuple[FlipCount, ...]:
         """The counts of verdicts that are known to change."""
-        return tuple(each for each in self.verdicts if each.becomes not in {None, each.was})
+        return tuple(count for count in self.verdicts if count.becomes not in {None, count.was})
 
     @property
     def not_known(self) -> int:
         """The number of verdicts that need a new check."""
-        return sum(each.n for each in self.verdicts if each.becomes is None)
+        return sum(count.n for count in self.verdicts if count.becomes is None)
 
 
 def what_if(

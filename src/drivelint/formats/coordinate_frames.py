@@ -99,10 +99,10 @@ class TransformTree:
         chain = self.chain(frame, fixed)
         if chain is None:
             return Poses(np.full((n, 3), np.nan), np.full((n, 4), np.nan))
-        found = Poses(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
+        poses = Poses(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
         for transform in chain:
-            found = _poses_at(transform, t_ns).compose(found)
-        return found
+            poses = _poses_at(transform, t_ns).compose(poses)
+        return poses
 
 
 def fixed_frame(frames: TransformTree, frame_names: Iterable[str]) -> str:

@@ -94,16 +94,16 @@ def _traces_in_path(path: Path) -> list[Path]:
         return [path]
     content = folder_tree(path, _SEARCHED_SUFFIXES)
     drives = drive_folders([*content.folders, *content.links])
-    inside, own = frozenset(drives), DrivelintFiles(path)
+    inside, own_files = frozenset(drives), DrivelintFiles(path)
     files = [
         file
         for file in content.files
         if file.suffix.lower() in _SEARCHED_SUFFIXES
         and inside.isdisjoint(file.parents)
-        and file not in own
+        and file not in own_files
         and (is_log_name(file.name) or (file.suffix.lower() == ".xml" and _is_xml_log(file)))
     ]
-    missed = [each for each in (*content.links, *content.unreadable) if inside.isdisjoint((each, *each.parents))]
+    missed = [place for place in (*content.links, *content.unreadable) if inside.isdisjoint((place, *place.parents))]
     if not (drives or files or missed):
         raise TraceError(
             f"{path}: no trace in this folder (looked for {', '.join(sorted(TRACE_SUFFIXES))}, SUMO and CommonRoad .xml): check the path"
@@ -125,8 +125,8 @@ def _is_xml_log(file: Path) -> bool:
     from drivelint.formats.sumo.fcd import is_fcd
 
     try:
-        with file.open("rb") as opened:
-            head = opened.read(_HEAD_BYTES)
+        with file.open("rb") as content:
+            head = content.read(_HEAD_BYTES)
         return is_fcd(file, head) or has_obstacles(file, head)
     except OSError:
         return True
@@ -140,7 +140,9 @@ def is_utf8(path: str) -> bool:
 def file_names_sizes_and_change_times(path: Path) -> list[tuple[str, int, int]]:
     """Return name, size and time of the last change of each file of a trace. Errors: `TraceError`."""
     try:
-        return [(file.name, found.st_size, found.st_mtime_ns) for file in drive_files(path) for found in [file.stat()]]
+        return [
+            (file.name, status.st_size, status.st_mtime_ns) for file in drive_files(path) for status in [file.stat()]
+        ]
     except OSError as error:
         raise _unreadable_error(path, error) from error
 

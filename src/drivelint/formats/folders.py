@@ -89,7 +89,7 @@ def drive_files(path: Path) -> list[Path]:
             path / METADATA_FILE,
             *(path / file.name for file in bag_files(path) if (path / file.name).is_file()),
         ]
-    patterns = next((known.files for known in FOLDER_KINDS if known.name == kind), ())
+    patterns = next((entry.files for entry in FOLDER_KINDS if entry.name == kind), ())
     return [file for pattern in patterns for file in _matching_files(path, pattern)]
 
 

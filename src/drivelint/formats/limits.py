@@ -98,7 +98,7 @@ def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, erro
         finally:
             watch.end()
     except _LimitExceededError as error:
-        files = [Path(each.filename) for each in traceback.extract_tb(error.__traceback__)]
+        files = [Path(frame.filename) for frame in traceback.extract_tb(error.__traceback__)]
         inner = [
             file.relative_to(_PACKAGE_FOLDER)
             for file in files

@@ -65,8 +65,8 @@ def read_source(path: Path) -> MapSource:
         raise _too_large_error(str(path), size)
     if not content:
         raise MapError(f"map {path} is empty: give the complete file")
-    if (told := wrapping_and_remedy(content)) is not None:
-        raise MapError(f"map {path}: {told}")
+    if (remedy := wrapping_and_remedy(content)) is not None:
+        raise MapError(f"map {path}: {remedy}")
     if not is_utf8(path.name):
         raise MapError(
             f"map {escape_invisible(path.name)}: its name is not UTF-8, which the result files require: rename it"
@@ -117,15 +117,15 @@ def load_map(
 
 def _refuse_too_many_grid_squares(source: MapSource, tables: MapTables) -> None:
     """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
-    squares, most = (
+    squares, largest = (
         approximate_square_count(tables.tables["lane_point"]),
         limits.memory_limit_bytes(len(source.content)),
     )
-    if squares * BYTES_PER_SQUARE > most:
+    if squares * BYTES_PER_SQUARE > largest:
         lanes = tables.tables["lanelet"].num_rows
         raise MapError(
             f"map {source.name}: its {lanes} lanes cover {squares:.0f} squares of {SQUARE_SIDE_M:g} m, and each takes "
-            f"{BYTES_PER_SQUARE} bytes: more than the limit of {most >> 20} MiB for a map of {len(source.content)} "
+            f"{BYTES_PER_SQUARE} bytes: more than the limit of {largest >> 20} MiB for a map of {len(source.content)} "
             "bytes: give a smaller part of the map"
         )
 
@@ -138,8 +138,8 @@ def _reader_module(source: MapSource) -> str:
             return reader
     root = root_element_name(source.content)
     if root is None:
-        shown = source.content[:24]
-        raise MapError(f"map {source.name} is not XML (it begins with {shown!r}): give an OpenDRIVE file (.xodr)")
+        head = source.content[:24]
+        raise MapError(f"map {source.name} is not XML (it begins with {head!r}): give an OpenDRIVE file (.xodr)")
     if root.lower() not in READERS_BY_ROOT:
         looks = _UNSUPPORTED_ROOTS.get(root.lower(), f"XML with the root element <{root}>")
         raise MapError(
@@ -157,5 +157,5 @@ def root_element_name(content: bytes) -> str | None:
     at = 0
     while skipped := _XML_PROLOG_PART.match(text, at):
         at = skipped.end()
-    found = _ROOT_TAG.match(text, at)
-    return found.group(1) if found else None
+    match = _ROOT_TAG.match(text, at)
+    return match.group(1) if match else None

@@ -24,7 +24,7 @@ WRAPPINGS: Final = {
 
 def wrapping_and_remedy(head: bytes) -> str | None:
     """Return the kind of a file with these first bytes, and the remedy, if it is an archive or a pointer; else None."""
-    return next((told for magic, told in WRAPPINGS.items() if head.startswith(magic)), None)
+    return next((remedy for magic, remedy in WRAPPINGS.items() if head.startswith(magic)), None)
 
 
 @dataclass(frozen=True)

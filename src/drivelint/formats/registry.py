@@ -79,7 +79,7 @@ def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Tra
     """Read a log. Errors: as `read_trace`, and `ChangedLogError` if the states of its files differ from `before`."""
     path, options = probe.path, probe.options
     identity = identify(path)
-    if reader := next((each for each in readers() if each.accepts(probe)), None):
+    if reader := next((candidate for candidate in readers() if candidate.accepts(probe)), None):
         recording = reader.read(probe)
         if file_names_sizes_and_change_times(path) != before:  # the hash may be that of other content
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
@@ -140,8 +140,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
     if path.name == METADATA_FILE and is_bag(path.parent):
         raise TraceError(f"{path}: it describes a bag: give the bag's folder, {path.parent}")
-    if (told := wrapping_and_remedy(head)) is not None:
-        raise TraceError(f"{path}: {told}")
+    if (remedy := wrapping_and_remedy(head)) is not None:
+        raise TraceError(f"{path}: {remedy}")
     suffix = path.suffix.lower()
     if suffix == ".osi" and not may_be_osi_trace(head, path.stat().st_size):
         raise TraceError(

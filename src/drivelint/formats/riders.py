@@ -52,8 +52,8 @@ def join_riders_and_return_merged_rows_and_rider_tracks(
     riders = np.unique(actor[keeper]).tolist()
     for name, values in zip(_SIZE_COLUMNS, high - low, strict=True):
         for number in riders:  # one size for all times: the two boxes jitter against each other
-            own = actor[keeper] == number
-            boxes[name][keeper[own]] = np.median(values[own])
+            of_track = actor[keeper] == number
+            boxes[name][keeper[of_track]] = np.median(values[of_track])
     inside[under] = inside[on] = True
     inside[keeper] = False
     return inside, riders

@@ -62,15 +62,15 @@ class GateInputs:
         `settings_file` may contain waivers besides other settings; it may be None or missing. `load`: function that reads a baseline.
         Errors: `UsageError` for an unusable file or folder, or a baseline that this run would overwrite.
         """
-        said = waivers.read(waiver_file) if waiver_file else []
+        all_waivers = waivers.read(waiver_file) if waiver_file else []
         if settings_file and settings_file.is_file():
-            said += waivers.read(settings_file, only_waivers=False)
-        if baseline is None and not said and confidence is None:
+            all_waivers += waivers.read(settings_file, only_waivers=False)
+        if baseline is None and not all_waivers and confidence is None:
             return None
         refuse_to_overwrite_baseline(baseline, out)
         if baseline is None:
-            return cls(today, waivers=tuple(said), confidence=confidence)
-        return cls(today, load(baseline), baseline.resolve().name, tuple(said), confidence)
+            return cls(today, waivers=tuple(all_waivers), confidence=confidence)
+        return cls(today, load(baseline), baseline.resolve().name, tuple(all_waivers), confidence)
 
     def apply_to(self, result: Result) -> Result:
         """Return the result with its gate: the difference from the baseline, the applied waivers, and the findings that are only

@@ -77,18 +77,18 @@ def counts_sentence(n_by_status: Mapping[str, int], n_worse: int, n_fixed: tuple
     passes, idle = (
         f"{k} now {words}" if k else "" for k, words in zip(n_fixed, ("pass", "not applicable"), strict=True)
     )
-    said = (
+    phrases = (
         [f"{n_by_status['changed']} changed{f' ({n_worse} worse)' if n_worse else ''}"]
         if n_by_status["changed"]
         else []
     )
-    said += [f"{n_by_status['unchanged']} unchanged"] if n_by_status["unchanged"] else []
-    said += (
+    phrases += [f"{n_by_status['unchanged']} unchanged"] if n_by_status["unchanged"] else []
+    phrases += (
         [f"{n_by_status['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n_by_status["fixed"] else []
     )
-    gone = [f"{n_by_status[status]} {words}" for status, words in NOT_FIXED_WORDS.items() if n_by_status[status]]
-    parts = [", ".join(said)] if said else []
-    parts += [f"gone but not fixed: {', '.join(gone)}"] if gone else []
+    unfixed = [f"{n_by_status[status]} {words}" for status, words in NOT_FIXED_WORDS.items() if n_by_status[status]]
+    parts = [", ".join(phrases)] if phrases else []
+    parts += [f"gone but not fixed: {', '.join(unfixed)}"] if unfixed else []
     return "; ".join(parts) or "no earlier finding"
 
 
@@ -100,19 +100,19 @@ def judged_less_sentence(difference: Difference) -> str:
     parts = (
         [f"{plural(n, 'verdict')} unknown that {'was' if n == 1 else 'were'} pass or fail before{more}"] if n else []
     )
-    for noun, names, done in (
+    for noun, names, verb in (
         ("drive", difference.base_only, "checked"),
         ("rule", difference.rules_not_run, "selected"),
     ):
-        parts += [f"{plural(len(names), noun)} of the baseline not {done}"] if names else []
+        parts += [f"{plural(len(names), noun)} of the baseline not {verb}"] if names else []
     parts += [f"{plural(len(difference.shorter), 'drive')} shorter by more than a tenth"] if difference.shorter else []
-    told = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
+    sentences = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
     if difference.other_maps:
-        told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
+        sentences.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
     if difference.changed_rules:
         rules = name_list(difference.changed_rules, MOST_CHANGED_RULES)
-        told.append(f"judged by other parameters or another version of a rule than in the baseline: {rules}")
-    return "; ".join(told)
+        sentences.append(f"judged by other parameters or another version of a rule than in the baseline: {rules}")
+    return "; ".join(sentences)
 
 
 def difference_text(
@@ -153,21 +153,21 @@ def unjudged_findings_phrase(difference: Difference, least_severity: str) -> str
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(least_severity) + 1]
     n = n_findings(entry for entry in difference.unfixed_findings() if entry.stable and entry.severity in severe)
-    said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
-    said += ["the newer run was interrupted"] if difference.is_partial else []
-    return " and ".join(said)
+    phrases = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
+    phrases += ["the newer run was interrupted"] if difference.is_partial else []
+    return " and ".join(phrases)
 
 
 def exit_sentence(n_failing: int, fail_on: str, unjudged_phrase: str = "") -> str:
     """Return the exit code and its reason in one line. `n_failing`: number of new findings that gate."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
-    what = f"at or above severity {fail_on}"
+    range_text = f"at or above severity {fail_on}"
     if n_failing:
-        return f"exit 1: {plural(n_failing, 'new finding')} {what}"
+        return f"exit 1: {plural(n_failing, 'new finding')} {range_text}"
     if unjudged_phrase:
-        return f"exit 4: no new finding {what}, but {unjudged_phrase}"
-    return f"exit 0: no new finding {what}"
+        return f"exit 4: no new finding {range_text}, but {unjudged_phrase}"
+    return f"exit 0: no new finding {range_text}"
 
 
 def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
@@ -193,10 +193,12 @@ def finding_line(entry: ComparedFinding) -> str:
     A finding that is worse has both margins at the end of the line.
     """
     profile = "" if entry.profile is None else f" [{entry.profile}]"
-    who = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
+    parties = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
     margin = "" if entry.margin is None or entry.worse else f", margin {number(entry.margin, entry.unit)}"
-    head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
+    head = (
+        f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {parties}{margin}"
+    )
     return f"{head}{_phrase_on_other_result(entry)}"
 
 
@@ -239,9 +241,9 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
 def waiver_scope_phrase(waiver: Waiver) -> str:
     """Return a phrase with the rule, drive, ego, object, profile and times that a waiver covers."""
     parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
-    said = "".join(f", {name} {value}" for name, value in parts if value is not None)
+    patterns = "".join(f", {name} {value}" for name, value in parts if value is not None)
     since = "" if waiver.from_s is None else f", from {waiver.from_s:g} s"
-    return f"{waiver.rule}{said}{since}" + ("" if waiver.to_s is None else f", to {waiver.to_s:g} s")
+    return f"{waiver.rule}{patterns}{since}" + ("" if waiver.to_s is None else f", to {waiver.to_s:g} s")
 
 
 def waiver_reason_phrase(waiver: Waiver) -> str:
@@ -292,8 +294,12 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
 
 def unknowns_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
     """Return (reason, its rules, number of additional unknown verdicts) for each reason, the most frequent first."""
-    found = [
-        (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))
-        for reason, alike in counts.group_rows(new_unknowns, lambda each: each.reason).items()
+    rows = [
+        (
+            reason,
+            sorted({unknowns.rule_id for unknowns in alike}),
+            sum(unknowns.n - unknowns.base_n for unknowns in alike),
+        )
+        for reason, alike in counts.group_rows(new_unknowns, lambda unknowns: unknowns.reason).items()
     ]
-    return sorted(found, key=lambda item: (-item[2], item[0]))
+    return sorted(rows, key=lambda item: (-item[2], item[0]))

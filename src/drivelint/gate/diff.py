@@ -48,32 +48,32 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
         list(base_lookup.drives.values()), list(new_lookup.drives.values())
     )
     entries: list[ComparedFinding] = []
-    gone: list[ComparedFinding] = []
+    base_only_entries: list[ComparedFinding] = []
     for drive_id in dict.fromkeys([*new_lookup.findings, *base_id_by_new_id]):
-        found, left = _entries_of_drive(base_lookup, new_lookup, base_id_by_new_id.get(drive_id), drive_id)
-        entries += found
-        gone += left
-    both = [(new_lookup.drives[now], base_lookup.drives[was]) for now, was in base_id_by_new_id.items()]
-    known = set(base_id_by_new_id.values())
+        new_entries, left = _entries_of_drive(base_lookup, new_lookup, base_id_by_new_id.get(drive_id), drive_id)
+        entries += new_entries
+        base_only_entries += left
+    pairs = [(new_lookup.drives[now], base_lookup.drives[was]) for now, was in base_id_by_new_id.items()]
+    matched_drives = set(base_id_by_new_id.values())
     for drive_id, stretches in base_lookup.findings.items():
-        if drive_id not in known:
-            gone += [
-                _base_only_finding(each, drive_id, new_lookup.verdict_at(None, each), base_lookup) for each in stretches
+        if drive_id not in matched_drives:
+            base_only_entries += [
+                _base_only_finding(was, drive_id, new_lookup.verdict_at(None, was), base_lookup) for was in stretches
             ]
     return Difference(
-        entries=(*entries, *gone),
+        entries=(*entries, *base_only_entries),
         new_unknowns=tuple(_new_unknowns(base, new, base_id_by_new_id, new_lookup)),
         base_verdicts=counts.verdict_counts(base.verdicts),
         verdicts=counts.verdict_counts(new.verdicts),
-        base_only=tuple(sorted(drive for drive in base_lookup.drives if drive not in known)),
+        base_only=tuple(sorted(drive for drive in base_lookup.drives if drive not in matched_drives)),
         new_only=tuple(sorted(drive for drive in new_lookup.drives if drive not in base_id_by_new_id)),
         base_name=base_name,
         name=name,
         undecided=_newly_undecided_counts(base, new, base_id_by_new_id, base_lookup),
         rules_not_run=tuple(sorted(base_lookup.rules.keys() - new_lookup.rules.keys())),
         n_both=len(base_id_by_new_id),
-        other_maps=tuple(sorted(now["drive_id"] for now, was in both if now["map_sha256"] != was["map_sha256"])),
-        shorter=tuple(sorted(now["drive_id"] for now, was in both if _is_drive_much_shorter(now, was))),
+        other_maps=tuple(sorted(now["drive_id"] for now, was in pairs if now["map_sha256"] != was["map_sha256"])),
+        shorter=tuple(sorted(now["drive_id"] for now, was in pairs if _is_drive_much_shorter(now, was))),
         changed_rules=tuple(name for name in sorted(new_lookup.rules) if _is_changed(name, base_lookup, new_lookup)),
     )
 
@@ -87,37 +87,37 @@ def _entries_of_drive(
     base_lookup: ResultLookup, new_lookup: ResultLookup, base_id: str | None, drive_id: str
 ) -> tuple[list[ComparedFinding], list[ComparedFinding]]:
     """Return the entries of one drive: for the findings of the new result, and for the findings that only the base result has."""
-    theirs = [] if base_id is None else base_lookup.findings.get(base_id, [])
-    ours = new_lookup.findings.get(drive_id, [])
+    base_findings = [] if base_id is None else base_lookup.findings.get(base_id, [])
+    new_findings = new_lookup.findings.get(drive_id, [])
     same_log = base_id is not None and base_lookup.drives[base_id]["sha256"] == new_lookup.drives[drive_id]["sha256"]
-    pairs = match.match_findings(theirs, ours, same_log=same_log)
-    told = set(pairs.values())
+    pairs = match.match_findings(base_findings, new_findings, same_log=same_log)
+    matched = set(pairs.values())
     entries: list[ComparedFinding] = []
-    for i, now in enumerate(ours):
+    for i, now in enumerate(new_findings):
         if i in pairs:
-            entries.append(_matched_finding(now, theirs[pairs[i]], new_lookup))
-        elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
-            told.add(wholes[0])
-            was = theirs[wholes[0]]
-            said = VerdictAndReason("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
-            entries.append(_compared_finding("changed", now, was, new_lookup, said))
+            entries.append(_matched_finding(now, base_findings[pairs[i]], new_lookup))
+        elif wholes := [j for j, was in enumerate(base_findings) if match.is_part_of(now, was, same_log=same_log)]:
+            matched.add(wholes[0])
+            was = base_findings[wholes[0]]
+            outcome = VerdictAndReason("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
+            entries.append(_compared_finding("changed", now, was, new_lookup, outcome))
         else:
-            said = base_lookup.verdict_at(base_id, now)
+            outcome = base_lookup.verdict_at(base_id, now)
             entries.append(
                 _compared_finding(
-                    "new", now, None, new_lookup, _outcome_with_rule_note(said, now, base_lookup, new_lookup)
+                    "new", now, None, new_lookup, _outcome_with_rule_note(outcome, now, base_lookup, new_lookup)
                 )
             )
-    gone: list[ComparedFinding] = []
-    for was in (each for j, each in enumerate(theirs) if j not in told):
-        wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
+    base_only: list[ComparedFinding] = []
+    for was in (finding for j, finding in enumerate(base_findings) if j not in matched):
+        wholes = [i for i in sorted(pairs) if match.is_part_of(was, new_findings[i], same_log=same_log)]
         if wholes:
-            said = VerdictAndReason("fail", f"it now contains the earlier finding {was.row['finding_id']}")
-            gone.append(_compared_finding("changed", ours[wholes[0]], was, new_lookup, said))
+            outcome = VerdictAndReason("fail", f"it now contains the earlier finding {was.row['finding_id']}")
+            base_only.append(_compared_finding("changed", new_findings[wholes[0]], was, new_lookup, outcome))
         else:
-            said = _outcome_with_rule_note(new_lookup.verdict_at(drive_id, was), was, base_lookup, new_lookup)
-            gone.append(_base_only_finding(was, drive_id, said, base_lookup))
-    return entries, gone
+            outcome = _outcome_with_rule_note(new_lookup.verdict_at(drive_id, was), was, base_lookup, new_lookup)
+            base_only.append(_base_only_finding(was, drive_id, outcome, base_lookup))
+    return entries, base_only
 
 
 def _outcome_with_rule_note(
@@ -154,10 +154,10 @@ def _margins_differ(now: Row, was: Row) -> bool:
     a, b = now["margin"], was["margin"]
     if a is None or b is None or a == b:
         return bool(a != b)
-    allowed = max(
+    tolerance = max(
         UNCHANGED_MARGIN_TOLERANCE, UNCHANGED_MARGIN_TOLERANCE * max(abs(row["required"] or 0.0) for row in (now, was))
     )
-    return not abs(a - b) <= allowed
+    return not abs(a - b) <= tolerance
 
 
 def _is_less(now: float | None, was: float | None) -> bool:
@@ -213,7 +213,7 @@ def _new_unknowns(
             new_unknowns.append(
                 NewUnknowns(drive_id, ego_id, rule_id, profile, new_lookup.is_stable(rule_id), n, before, reason)
             )
-    return sorted(new_unknowns, key=lambda each: (each.drive_id, each.ego_id, each.rule_id, each.profile or ""))
+    return sorted(new_unknowns, key=lambda row: (row.drive_id, row.ego_id, row.rule_id, row.profile or ""))
 
 
 def _unknown_counts_and_reasons(result: Result) -> dict[Any, tuple[int, str]]:
@@ -223,8 +223,8 @@ def _unknown_counts_and_reasons(result: Result) -> dict[Any, tuple[int, str]]:
     )
     rows = counts.distinct_rows(open_rows, [*_PLACE_COLUMNS, "reason"])
     return {
-        at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
-        for at, told in counts.group_rows(rows, itemgetter(*_PLACE_COLUMNS)).items()
+        at: (sum(row["count_all"] for row in reasons), min((-row["count_all"], row["reason"]) for row in reasons)[1])
+        for at, reasons in counts.group_rows(rows, itemgetter(*_PLACE_COLUMNS)).items()
     }
 
 
@@ -233,14 +233,14 @@ def _newly_undecided_counts(
 ) -> dict[str, int]:
     """Return severity -> number of verdicts that changed from pass or fail to unknown or error, in drives that both have."""
     was, now = _verdict_counts(base), _verdict_counts(new)
-    found: Counter[str] = Counter()
+    n_by_severity: Counter[str] = Counter()
     for (drive_id, ego_id, rule_id, profile), here in now.items():
         before = was.get((base_id_by_new_id.get(drive_id), ego_id, rule_id, profile), Counter[str]())
-        opened = here["unknown"] + here["error"] - before["unknown"] - before["error"]
-        gone = before["pass"] + before["fail"] - here["pass"] - here["fail"]
-        if min(opened, gone) > 0:
-            found[base_lookup.rules[rule_id]["severity"]] += min(opened, gone)
-    return {severity: found[severity] for severity in counts.SEVERITIES if found[severity]}
+        n_more_unknown = here["unknown"] + here["error"] - before["unknown"] - before["error"]
+        n_less_decided = before["pass"] + before["fail"] - here["pass"] - here["fail"]
+        if min(n_more_unknown, n_less_decided) > 0:
+            n_by_severity[base_lookup.rules[rule_id]["severity"]] += min(n_more_unknown, n_less_decided)
+    return {severity: n_by_severity[severity] for severity in counts.SEVERITIES if n_by_severity[severity]}
 
 
 def _verdict_counts(result: Result) -> dict[Any, Counter[str]]:
@@ -272,9 +272,9 @@ class ResultLookup:
         self._objects: dict[str, set[str]] = defaultdict(set)
         self._recorded: dict[tuple[str, str], list[tuple[float, float]]] = defaultdict(list)
         for drive in self.drives.values():
-            for each in drive["recorded"] or ():
-                start, end = (match.seconds_since_start(each[name], drive) for name in ("t_from_ns", "t_to_ns"))
-                self._recorded[drive["drive_id"], each["actor_id"]].append((start, end))
+            for span in drive["recorded"] or ():
+                start, end = (match.seconds_since_start(span[name], drive) for name in ("t_from_ns", "t_to_ns"))
+                self._recorded[drive["drive_id"], span["actor_id"]].append((start, end))
         columns = (
             "drive_id", "ego_id", "rule_id", "profile", "object_id", "verdict", "reason_code", "reason",
             "t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns", "n_expected", "n_judged",
@@ -314,37 +314,35 @@ class ResultLookup:
         ):
             return VerdictAndReason("none", "the log ends before the finding")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
-        rows = [each for each in rows if each["profile"] in {row["profile"], None}]
+        rows = [verdict for verdict in rows if verdict["profile"] in {row["profile"], None}]
         if not rows:
             return VerdictAndReason("none", "the rule has no verdict")
-        there = [
-            each for each in rows if self._concerns_object(each, row, drive_id) and _covers_time(each, finding, drive)
-        ]
-        said = [
-            judged
-            for each in there
-            if (judged := self._outcome_at_finding(each, finding)).verdict in _VERDICTS_BY_WEIGHT
+        there = [v for v in rows if self._concerns_object(v, row, drive_id) and _covers_time(v, finding, drive)]
+        outcomes = [
+            outcome
+            for verdict in there
+            if (outcome := self._outcome_at_finding(verdict, finding)).verdict in _VERDICTS_BY_WEIGHT
         ]
         not_applicable = VerdictAndReason(
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
-        found = min(said, key=lambda each: _VERDICTS_BY_WEIGHT.index(each.verdict), default=not_applicable)
-        if found.verdict in _FIXED_VERDICTS and (missing := self._outcome_if_not_recorded(drive_id, finding)):
-            return missing
-        return found
+        gravest = min(outcomes, key=lambda verdict: _VERDICTS_BY_WEIGHT.index(verdict.verdict), default=not_applicable)
+        if gravest.verdict in _FIXED_VERDICTS and (not_recorded := self._outcome_if_not_recorded(drive_id, finding)):
+            return not_recorded
+        return gravest
 
     def _outcome_if_not_recorded(self, drive_id: str, finding: TimedFinding) -> VerdictAndReason | None:
         """Return an outcome if the ego or the object is not recorded at the finding; None: both are recorded."""
-        for what in ("ego", "object"):
-            actor = finding.row[f"{what}_id"]
+        for role in ("ego", "object"):
+            actor = finding.row[f"{role}_id"]
             stretches = self._recorded.get((drive_id, actor), ())
             if actor is None or match.is_recorded_during(stretches, finding):
                 continue
             if not stretches:
-                return VerdictAndReason("none", f"{what} {actor} is not in this log, or has another id")
+                return VerdictAndReason("none", f"{role} {actor} is not in this log, or has another id")
             times = ", ".join(f"{start:.2f} s to {end:.2f} s" for start, end in stretches[:3])
             more = f" and {len(stretches) - 3} more times" if len(stretches) > 3 else ""
-            return VerdictAndReason("unknown", f"{what} {actor} is recorded only from {times}{more}")
+            return VerdictAndReason("unknown", f"{role} {actor} is recorded only from {times}{more}")
         return None
 
     def _outcome_at_finding(self, verdict: Row, finding: TimedFinding) -> VerdictAndReason:
@@ -353,16 +351,16 @@ class ResultLookup:
             return VerdictAndReason("unknown", verdict["reason"])
         if verdict["verdict"] != "fail":
             return VerdictAndReason(verdict["verdict"], verdict["reason"])
-        mine = self.findings.get(verdict["drive_id"], ())
-        alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(finding.row)]
-        if any(match.gap_s(other, finding) <= match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S for other in alike):
+        findings = self.findings.get(verdict["drive_id"], ())
+        alike = [earlier for earlier in findings if match.finding_key(earlier.row) == match.finding_key(finding.row)]
+        if any(match.gap_s(earlier, finding) <= match.MOST_TIME_BETWEEN_MATCHED_FINDINGS_S for earlier in alike):
             return VerdictAndReason("fail", "the rule still fails, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
             return VerdictAndReason(
                 "pass", "the rule is kept at this time, but broken at another time of the same verdict"
             )
-        missing = verdict["n_expected"] - verdict["n_judged"]
-        why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
+        n_missing = verdict["n_expected"] - verdict["n_judged"]
+        why = f"the rule fails at another time, and {n_missing} of {verdict['n_expected']} steps were not judged"
         return VerdictAndReason("unknown", why)
 
     def _outcome_if_not_judged(self, drive_id: str | None, finding: Row) -> VerdictAndReason | None:

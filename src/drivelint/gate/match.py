@@ -47,13 +47,13 @@ def base_drive_by_new_drive(base: Sequence[Row], new: Sequence[Row]) -> dict[str
     ids = {row["drive_id"] for row in base}
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
     for content in ("sha256", None):
-        known = {*same.values()}
-        left = _drive_ids_by_column_value((row for row in base if row["drive_id"] not in known), content)
+        matched = {*same.values()}
+        left = _drive_ids_by_column_value((row for row in base if row["drive_id"] not in matched), content)
         right = _drive_ids_by_column_value((row for row in new if row["drive_id"] not in same), content)
-        for key, mine in right.items():
-            others = left.get(key, [])
-            if content is not None or len(mine) == len(others) == 1:
-                same |= zip(mine, others, strict=False)
+        for key, new_ids in right.items():
+            base_ids = left.get(key, [])
+            if content is not None or len(new_ids) == len(base_ids) == 1:
+                same |= zip(new_ids, base_ids, strict=False)
     return same
 
 
@@ -79,13 +79,13 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
         for had in (base[j],)
         if may_match(had, now, same_log=same_log)
     ]
-    taken: dict[int, int] = {}
+    base_by_new: dict[int, int] = {}
     left = set(range(len(base)))
     for _, _, _, i, j in sorted(pairs):
-        if i not in taken and j in left:
-            taken[i] = j
+        if i not in base_by_new and j in left:
+            base_by_new[i] = j
             left.remove(j)
-    return taken
+    return base_by_new
 
 
 def may_match(base: TimedFinding, new: TimedFinding, *, same_log: bool) -> bool:

@@ -88,19 +88,19 @@ def states_and_matches(
     expired = [date.fromisoformat(waiver.expires) < today for waiver in waivers]
     rows = result.findings.to_pylist()
     waived: dict[str, int] = {}
-    found: list[int] = []
+    counts: list[int] = []
     for number, waiver in enumerate(waivers):
         matched = [row for row in rows if _matches(waiver, row, drives[row["drive_id"]])]
-        found.append(len(one_finding_per_event(matched)))
+        counts.append(len(one_finding_per_event(matched)))
         if not expired[number]:
             for row in matched:
                 waived.setdefault(row["finding_id"], number)
     stated = (
         replace(
             waiver,
-            findings=found[n],
+            findings=counts[n],
             unknown_rule=_unknown_rule_sentence(waiver.rule, result),
-            state="expired" if expired[n] else "active" if found[n] else "unmatched",
+            state="expired" if expired[n] else "active" if counts[n] else "unmatched",
         )
         for n, waiver in enumerate(waivers)
     )
@@ -115,10 +115,10 @@ def _unknown_rule_sentence(rule_id: str, result: Result) -> str:
     dirs = () if result.run_options is None else result.run_options.rules_dirs
     if not all(folder.is_dir() for folder in dirs):
         return ""
-    known = sorted({*run_rules, *load_rules(dirs)})
-    if rule_id in known:
+    rule_ids = sorted({*run_rules, *load_rules(dirs)})
+    if rule_id in rule_ids:
         return ""
-    near = get_close_matches(rule_id, known, n=1)
+    near = get_close_matches(rule_id, rule_ids, n=1)
     return "no rule has this id; " + (f"did you mean {near[0]!r}?" if near else "drivelint rules list shows them all")
 
 
@@ -141,12 +141,12 @@ def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Map
     def error_at_key(key: str, why: str) -> UsageError:
         return UsageError(f"{file}:{lines.get(key, head)}: waiver: {why}")
 
-    known = (*_REQUIRED_KEYS, *_PATTERN_KEYS, *_TIME_KEYS)
+    keys = (*_REQUIRED_KEYS, *_PATTERN_KEYS, *_TIME_KEYS)
     for key in table:
-        if key not in known:
-            raise error_at_key(key, f"unknown key {key!r}; {hint(key, known)}")
-    if missing := [key for key in _REQUIRED_KEYS if key not in table]:
-        raise error_at_key("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
+        if key not in keys:
+            raise error_at_key(key, f"unknown key {key!r}; {hint(key, keys)}")
+    if lacking := [key for key in _REQUIRED_KEYS if key not in table]:
+        raise error_at_key("", f"{' and '.join(lacking)} missing: a waiver needs an owner, a reason and a date")
     _refuse_empty_or_too_long_texts(table, error_at_key)
     for key in _TIME_KEYS:
         if key in table and (

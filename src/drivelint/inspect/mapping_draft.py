@@ -17,7 +17,7 @@ _WORD_PATTERN: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
 _WORDS_BY_FUSED_WORD: Final[dict[str, str]] = _FACTS["fused"]
 _UNIT_BY_WORD: Final[dict[str, str]] = _FACTS["units"]
-_TIME, _FRAMES, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
+_TIME, _FRAMES, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHER_WORDS = (
     frozenset[str](_FACTS[name]) for name in ("time", "frames", "id", "speed", "acceleration", "fillers", "others")
 )
 _WORDS_OF_FIELD: Final[dict[str, Collection[str]]] = _FACTS["fields"] | {"speed": _SPEED}
@@ -84,7 +84,7 @@ def _field_of_column(column: str) -> str | None:
     axes = words & {"x", "y", "z"}
     if len(axes) == 1:
         return _field_of_axis(next(iter(axes)), words, bare)
-    if words & _OTHERS:
+    if words & _OTHER_WORDS:
         return None
     for field, some in _WORDS_OF_FIELD.items():
         if not words.isdisjoint(some):

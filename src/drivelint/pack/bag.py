@@ -56,12 +56,12 @@ class Problem(NamedTuple):
 def explanation_text(problem: Problem) -> str:
     """Return in words what is wrong with a file that is a problem, after a colon; '' for problems that their kinds explain."""
     if problem.kind == CHANGED_SINCE_STATEMENT:
-        said = "its bytes are not those that the statement lists"
+        explanation = "its bytes are not those that the statement lists"
         if problem.subject == MANIFEST:
-            said += f", so a file in {DATA}/ was changed, added or removed, and the manifest was written again"
+            explanation += f", so a file in {DATA}/ was changed, added or removed, and the manifest was written again"
     else:
-        said = _EXPLANATION_BY_KIND.get(problem.kind, "")
-    return f": {said}" if said else ""
+        explanation = _EXPLANATION_BY_KIND.get(problem.kind, "")
+    return f": {explanation}" if explanation else ""
 
 
 def sha256_of(path: Path) -> str:
@@ -77,9 +77,9 @@ def write_info_and_manifest(folder: Path, info: Mapping[str, str]) -> None:
     """
     payload = [path for path in sorted((folder / DATA).rglob("*")) if path.is_file()]
     size = sum(path.stat().st_size for path in payload)
-    said = {**info, "Payload-Oxum": f"{size}.{len(payload)}"}
+    values = {**info, "Payload-Oxum": f"{size}.{len(payload)}"}
     (folder / DECLARATION).write_bytes(_DECLARATION_BYTES)
-    (folder / INFO).write_text("".join(f"{name}: {value}\n" for name, value in said.items()), "utf-8", newline="\n")
+    (folder / INFO).write_text("".join(f"{name}: {value}\n" for name, value in values.items()), "utf-8", newline="\n")
     _write_manifest(folder, MANIFEST, payload)
 
 
@@ -106,33 +106,33 @@ def problems_of_bag(folder: Path, allowed_tag_files: Collection[str]) -> list[Pr
     """
     if not (folder / DECLARATION).is_file() and not (folder / MANIFEST).is_file():
         raise UsageError(f"{folder}: no evidence pack: name the folder that drivelint pack --out wrote")
-    found: list[Problem] = []
+    problems: list[Problem] = []
     files: set[str] = set()
     for path in folder.rglob("*"):
         name = path.relative_to(folder).as_posix()
         if path.is_symlink() or not (path.is_file() or path.is_dir()):
-            found.append(Problem("link" if path.is_symlink() else "not a file", name))
+            problems.append(Problem("link" if path.is_symlink() else "not a file", name))
         elif path.is_file():
             files.add(name)
     payload = {name for name in files if name.startswith(f"{DATA}/")}
     tag_files = files - payload - {TAG_MANIFEST}
-    found += [Problem("file added", name) for name in tag_files - {DECLARATION, INFO, MANIFEST, *allowed_tag_files}]
+    problems += [Problem("file added", name) for name in tag_files - {DECLARATION, INFO, MANIFEST, *allowed_tag_files}]
     if DECLARATION in files and (folder / DECLARATION).read_bytes() != _DECLARATION_BYTES:
-        found.append(Problem("file changed", DECLARATION))
+        problems.append(Problem("file changed", DECLARATION))
     for manifest, names in ((TAG_MANIFEST, tag_files), (MANIFEST, payload)):
         if manifest not in files:
-            found.append(Problem("file removed", manifest))
+            problems.append(Problem("file removed", manifest))
             continue
         listed, wrong = _read_manifest(folder / manifest, is_of_payload=manifest == MANIFEST)
-        found += wrong
-        found += [Problem("file removed", name) for name in listed.keys() - names]
-        found += [Problem("file added", name) for name in names - listed.keys()]
+        problems += wrong
+        problems += [Problem("file removed", name) for name in listed.keys() - names]
+        problems += [Problem("file added", name) for name in names - listed.keys()]
         for name in sorted(listed.keys() & names):
             if sha256_of(folder / name) != listed[name]:
-                found.append(Problem("manifest changed" if name == MANIFEST else "file changed", name))
-    found += [Problem("file removed", name) for name in (DECLARATION, INFO) if name not in files]
-    found += _problems_of_info(folder, payload) if INFO in files else []
-    return sorted(set(found), key=lambda each: (each.subject, each.kind))
+                problems.append(Problem("manifest changed" if name == MANIFEST else "file changed", name))
+    problems += [Problem("file removed", name) for name in (DECLARATION, INFO) if name not in files]
+    problems += _problems_of_info(folder, payload) if INFO in files else []
+    return sorted(set(problems), key=lambda problem: (problem.subject, problem.kind))
 
 
 def bagging_date(folder: Path) -> str | None:

@@ -84,10 +84,10 @@ def problems_and_content(folder: Path) -> tuple[list[Problem], PackContent | Non
         if not (folder / name).is_file():
             return [Problem("statement missing", STATEMENT_FILE)], stated
         content = (folder / name).read_bytes()
-        said = signature.payload_of_envelope(content) if name == ENVELOPE_FILE else content
+        statement = signature.payload_of_envelope(content) if name == ENVELOPE_FILE else content
     except (DriveLintError, *READ_ERRORS) as error:
         return [*_altered_files(folder), Problem("result not readable", str(error))], None
-    return statement_problems(said, due) + wrong, stated
+    return statement_problems(statement, due) + wrong, stated
 
 
 def _altered_files(folder: Path) -> list[Problem]:
@@ -104,17 +104,17 @@ def read_evidence(folder: Path, version: int = FORMAT_VERSION) -> dict[str, Any]
     """Return the content of `evidence.json`. Errors: `ValueError` if a key occurs twice, or for another version of the format."""
 
     def dict_of_distinct_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
+        values = dict(pairs)
+        if len(values) < len(pairs):
             raise ValueError(f"{EVIDENCE_FILE} says something twice")
-        return found
+        return values
 
-    told: dict[str, Any] = json.loads(
+    evidence: dict[str, Any] = json.loads(
         (folder / EVIDENCE_FILE).read_text("utf-8"), object_pairs_hook=dict_of_distinct_keys
     )
-    if told["evidence"] != version:
-        raise ValueError(f"{EVIDENCE_FILE} is of form {told['evidence']}, this drivelint reads {version}")
-    return told
+    if evidence["evidence"] != version:
+        raise ValueError(f"{EVIDENCE_FILE} is of form {evidence['evidence']}, this drivelint reads {version}")
+    return evidence
 
 
 def _problems_of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
@@ -127,8 +127,10 @@ def _problems_of_evidence(folder: Path, result: Result, evidence: dict[str, Any]
     keys += _inputs_with_wrong_paths(json.loads((folder / RESULT_FOLDER / "run.json").read_text("utf-8")), evidence)
     keys += sheets.invalid_sheets(folder, evidence, possible_sheet_ids(result))
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
-    said, counted = packed_summary(folder), json.loads(summary.render(result))
-    keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
+    packed, computed = packed_summary(folder), json.loads(summary.render(result))
+    keys = sorted(
+        key for key in computed.keys() | packed.keys() if key != "tool" and packed.get(key) != computed.get(key)
+    )
     return wrong + [Problem("summary.json does not match the tables", key) for key in keys]
 
 
@@ -137,20 +139,20 @@ def differing_evidence_keys(
 ) -> list[str]:
     """Return the keys of `evidence.json` that differ from these facts, findings, versions of rules, or the paths of the SQL."""
     due: dict[str, Any] = {**facts, "findings": findings}
-    said = findings[0].keys() if findings else ()
-    told = {**evidence, "findings": [{key: row.get(key) for key in said} for row in evidence["findings"]]}
+    keys = findings[0].keys() if findings else ()
+    values = {**evidence, "findings": [{key: row.get(key) for key in keys} for row in evidence["findings"]]}
     due["rule versions"] = [rule["rule_version"] for rule in rules]
-    told["rule versions"] = [rule["rule_version"] for rule in facts["rules"]]
-    due["sql"] = [_expected_sql_path(row, has_drive_folder="key" in said) for row in evidence["findings"]]
-    told["sql"] = [row["sql"] for row in evidence["findings"]]
-    return [key for key, value in due.items() if told.get(key) != value]
+    values["rule versions"] = [rule["rule_version"] for rule in facts["rules"]]
+    due["sql"] = [_expected_sql_path(row, has_drive_folder="key" in keys) for row in evidence["findings"]]
+    values["sql"] = [row["sql"] for row in evidence["findings"]]
+    return [key for key, value in due.items() if values.get(key) != value]
 
 
 def _expected_sql_path(finding: dict[str, Any], *, has_drive_folder: bool) -> str | None:
     """Return the path where the SQL of a finding must be; None: the pack has a reason instead of the SQL."""
-    said = finding["without_sql_because"]
+    reason = finding["without_sql_because"]
     place = f"{FINDINGS_FOLDER}/{finding['key']}" if has_drive_folder else FINDINGS_FOLDER
-    return None if isinstance(said, str) and said else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
+    return None if isinstance(reason, str) and reason else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
 
 
 def _inputs_with_wrong_paths(run_json: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
@@ -159,9 +161,9 @@ def _inputs_with_wrong_paths(run_json: dict[str, Any], evidence: dict[str, Any])
     if len(run_json["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")
     inside = evidence["inputs"]
-    judged = {drive["drive_id"] for drive in evidence["drives"]}
+    drive_ids = {drive["drive_id"] for drive in evidence["drives"]}
     has_map = run_json["map"] is not None or run_json["map_dir"] is not None
-    if inside is not None and (inside["traces"].keys() != judged or has_map != (len(inside) > 1)):
+    if inside is not None and (inside["traces"].keys() != drive_ids or has_map != (len(inside) > 1)):
         wrong.append("inputs")
     return wrong
 
@@ -177,9 +179,12 @@ def _unnamed_payload_files(folder: Path, evidence: dict[str, Any]) -> list[Probl
     inside = evidence["inputs"] or {"traces": {}}
     places = [evidence["mapping"], *evidence["rules_dirs"], *inside["traces"].values()]
     places += [inside.get("map"), inside.get("map_dir")]
-    kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
+    input_folders = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
     return unnamed_files(
-        folder, evidence, named_files, [place for place in places if place is not None and place.startswith(kept)]
+        folder,
+        evidence,
+        named_files,
+        [place for place in places if place is not None and place.startswith(input_folders)],
     )
 
 
@@ -187,13 +192,15 @@ def unnamed_files(
     folder: Path, evidence: dict[str, Any], named_files: set[str], named_folders: Iterable[str]
 ) -> list[Problem]:
     """Return the files of the payload that are not in `named_files`, not below `named_folders`, and not data of a finding."""
-    known = {
+    known_paths = {
         *named_folders,
         *(row["sql"].removesuffix(f"/{finding_rows.SQL_FILE}") for row in evidence["findings"] if row["sql"]),
     }
     files = {path.relative_to(folder) for path in (folder / DATA).rglob("*") if path.is_file()}
-    found = [path.as_posix() for path in files if known.isdisjoint(each.as_posix() for each in (path, *path.parents))]
-    return [Problem("file that nothing names", name) for name in sorted(set(found) - named_files)]
+    names = [
+        path.as_posix() for path in files if known_paths.isdisjoint(place.as_posix() for place in (path, *path.parents))
+    ]
+    return [Problem("file that nothing names", name) for name in sorted(set(names) - named_files)]
 
 
 def _differing_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
@@ -232,8 +239,8 @@ def check_sql_of_findings(folder: Path, result: Result, check_request: RunReques
 def rules_contradiction(rules: list[Rule], table: pa.Table, check_request: RunRequest) -> str:
     """Return the contradiction between the table `rule` and the requested rules and parameters; '' if there is none."""
     try:
-        given = catalogue.parse_params(rules, check_request.params)
-        due = collect.rule_table(rules, given, check_request.profiles or DEFAULT_PROFILES)
+        params = catalogue.parse_params(rules, check_request.params)
+        due = collect.rule_table(rules, params, check_request.profiles or DEFAULT_PROFILES)
     except DriveLintError as error:
         return str(error)
     return "" if due.to_pylist() == table.to_pylist() else "rules.parquet has other parameters, profiles or rules"

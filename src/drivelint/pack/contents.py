@@ -46,8 +46,8 @@ _LIBRARIES_WITH_STATED_VERSION: Final = ("duckdb", "duckdb-extension-spatial", "
 
 def packed_summary(folder: Path) -> dict[str, Any]:
     """Return the content of `summary.json` in a pack."""
-    told: dict[str, Any] = json.loads((folder / RESULT_FOLDER / "summary.json").read_text("utf-8"))
-    return told
+    summary: dict[str, Any] = json.loads((folder / RESULT_FOLDER / "summary.json").read_text("utf-8"))
+    return summary
 
 
 def evidence_values_of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
@@ -67,7 +67,9 @@ def evidence_values_of_rules(folder: Path, rules: Sequence[Row]) -> dict[str, An
     """Return the files and the parameters of the rules of a result; `rules`: its table `rule`."""
     return {
         "rules": [_rule_entry(folder, rule["rule_id"]) for rule in rules],
-        "parameters": {f"{rule['rule_id']}.{each['name']}": each["value"] for rule in rules for each in rule["params"]},
+        "parameters": {
+            f"{rule['rule_id']}.{param['name']}": param["value"] for rule in rules for param in rule["params"]
+        },
     }
 
 
@@ -88,9 +90,9 @@ def _rule_entry(folder: Path, rule_id: str) -> dict[str, str]:
 def _options_of_check(check_request: RunRequest, result: Result) -> dict[str, Any]:
     """Return the options of the check, without the paths of logs, maps, mapping and rules."""
     plain = json.loads(run_request.render(check_request, Path()))
-    kept = {each.name for each in fields(DriveInput)} - {"map", "map_dir", "mapping"}
-    told = {key: value for key, value in plain.items() if key in {*kept, "profiles"}}
-    return {**told, "fail_on": result.fail_on, "strict": result.strict, "required": list(result.required)}
+    names = {field.name for field in fields(DriveInput)} - {"map", "map_dir", "mapping"}
+    options = {key: value for key, value in plain.items() if key in {*names, "profiles"}}
+    return {**options, "fail_on": result.fail_on, "strict": result.strict, "required": list(result.required)}
 
 
 def library_versions() -> dict[str, str]:
@@ -104,10 +106,10 @@ def library_versions() -> dict[str, str]:
 
 def path_inside_pack(folder: Path, path: str) -> Path:
     """Return the path of a file that `evidence.json` names. Errors: `ValueError` for a path outside the pack."""
-    found = folder / path
-    if not found.resolve().is_relative_to(folder.resolve()):
+    inside = folder / path
+    if not inside.resolve().is_relative_to(folder.resolve()):
         raise ValueError(f"{EVIDENCE_FILE} leads out of the pack: {path}")
-    return found
+    return inside
 
 
 def phrase_on_findings_with_sql(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
@@ -116,11 +118,11 @@ def phrase_on_findings_with_sql(rows: Sequence[Row], entries: Iterable[Mapping[s
     `rows`: the table `finding`; `entries`: the entries of `findings`.
     """
     with_sql = {entry["finding_id"] for entry in entries if entry["sql"]}
-    counted = one_finding_per_event(rows)
-    n = sum(row["finding_id"] in with_sql for row in counted)
-    said = f"{n} of {plural(len(counted), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
-    more = extra_rows_sentence(rows, counted)
-    return f"{said} ({more})" if more else said
+    events = one_finding_per_event(rows)
+    n = sum(row["finding_id"] in with_sql for row in events)
+    phrase = f"{n} of {plural(len(events), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
+    more = extra_rows_sentence(rows, events)
+    return f"{phrase} ({more})" if more else phrase
 
 
 def finding_entries(
@@ -128,13 +130,13 @@ def finding_entries(
 ) -> list[dict[str, Any]]:
     """Return the entries of findings: their numbers, and the path of the SQL or the reason why there is none. `findings_folder`: folder
     of the findings in the pack."""
-    told = []
+    new_entries = []
     for row in rows:
         files = evidence[row["finding_id"]]
         has_files = isinstance(files, dict)
-        told.append({
+        new_entries.append({
             **{key: row[key] for key in FINDING_ENTRY_COLUMNS},
             "sql": f"{findings_folder}/{row['finding_id']}/finding.sql" if has_files else None,
             "without_sql_because": None if has_files else files,
         })  # fmt: skip
-    return told
+    return new_entries

@@ -36,7 +36,7 @@ def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_i
     """Return the rows of a table about a drive and an ego, sorted, with ids as text and without geometry columns."""
     columns = con.execute(f"DESCRIBE {table}").fetchall()
     kinds = {str(name): str(kind) for name, kind, *_ in columns}
-    shown = [
+    shown_columns = [
         f"{name}::VARCHAR AS {name}" if kind.startswith("ENUM") else name
         for name, kind in kinds.items()
         if not kind.startswith("GEOMETRY")
@@ -44,7 +44,7 @@ def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_i
     keys = {"drive_id": drive_id, "ego_id": ego_id}
     where = " AND ".join(f"{name}::VARCHAR = ${name}" for name in keys if name in kinds) or "true"
     values = {name: value for name, value in keys.items() if name in kinds}
-    sql = f"SELECT {', '.join(shown)} FROM {table} WHERE {where} ORDER BY ALL"
+    sql = f"SELECT {', '.join(shown_columns)} FROM {table} WHERE {where} ORDER BY ALL"
     return con.execute(sql, values).to_arrow_table()
 
 
@@ -94,15 +94,15 @@ def _fewest_sufficient_rows(
             con.register(table, rows)
         return _are_finding_numbers_in_rows(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
-    least = {table: each[0] for table, each in choices.items()}
+    least = {table: choices_of_table[0] for table, choices_of_table in choices.items()}
     if are_sufficient(least):
         return least
-    chosen = dict(tables)
-    if not are_sufficient(chosen):
+    fewest = dict(tables)
+    if not are_sufficient(fewest):
         return None
-    for table, each in choices.items():
-        chosen[table] = _first_sufficient(each, lambda rows, table=table: are_sufficient({**chosen, table: rows}))  # type: ignore[misc]
-    return chosen
+    for table, tries in choices.items():
+        fewest[table] = _first_sufficient(tries, lambda rows, table=table: are_sufficient({**fewest, table: rows}))  # type: ignore[misc]
+    return fewest
 
 
 def _first_sufficient(choices: Sequence[pa.Table], is_sufficient: Callable[[pa.Table], bool]) -> pa.Table:
@@ -131,23 +131,23 @@ def _row_choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -
     parties = ", ".join(
         finding_sql.text_literal(finding[key]) for key in ("ego_id", "object_id") if finding[key] is not None
     )
-    named = [
+    terms_of_parties = [
         f"{name} IN ({parties})" for name in _OBJECT_COLUMNS if name in columns and finding["object_id"] is not None
     ]
-    ours = " OR ".join(named) or None
+    of_parties = " OR ".join(terms_of_parties) or None
     profile = (
         f"profile = {finding_sql.text_literal(finding['profile'])}"
         if "profile" in columns and finding["profile"]
         else None
     )
-    tried = [(step, ours), (step, None), (around, ours), (around, None), (None, ours), (None, None)]
-    terms = dict.fromkeys(tuple(term for term in (*each, profile) if term is not None) for each in tried)
+    tried = [(step, of_parties), (step, None), (around, of_parties), (around, None), (None, of_parties), (None, None)]
+    terms = dict.fromkeys(tuple(term for term in (*choice, profile) if term is not None) for choice in tried)
     con.register("_rows", rows)
-    found = [
-        con.execute(f"FROM _rows WHERE {' AND '.join(f'({term})' for term in each) or 'true'}").to_arrow_table()
-        for each in terms
+    selections = [
+        con.execute(f"FROM _rows WHERE {' AND '.join(f'({term})' for term in choice) or 'true'}").to_arrow_table()
+        for choice in terms
     ]
-    return [*found, rows]
+    return [*selections, rows]
 
 
 def _time_condition_sql(columns: Sequence[str], start_ns: int, end_ns: int) -> str | None:

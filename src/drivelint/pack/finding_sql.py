@@ -69,8 +69,8 @@ def param_literal(value: object) -> str:
 
 def text_literal(text: str) -> str:
     """Return a text as an SQL literal on one line, without invisible characters, which an id may contain."""
-    shown = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
-    return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
+    letters = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
+    return f"'{''.join(letters)}'" if text.isprintable() else f"('{''.join(letters)}')"
 
 
 def is_split_by_shell_as_by_parser(sql: str) -> bool:
@@ -82,33 +82,35 @@ def is_split_by_shell_as_by_parser(sql: str) -> bool:
 
 def called_macro_definitions(sql: str) -> list[str]:
     """Return the macros that a statement calls directly or indirectly, in the order of their definitions."""
-    known = _macro_definitions_by_name()
-    needed: set[str] = set()
+    definitions = _macro_definitions_by_name()
+    names: set[str] = set()
     todo = [sql]
     while todo:
-        called = {name.lower() for name in _CALL_PATTERN.findall(_COMMENT_PATTERN.sub("", todo.pop()))}
-        new = (called & known.keys()) - needed
-        needed |= new
-        todo += [known[name] for name in new]
-    return [text for name, text in known.items() if name in needed]
+        callees = {name.lower() for name in _CALL_PATTERN.findall(_COMMENT_PATTERN.sub("", todo.pop()))}
+        new = (callees & definitions.keys()) - names
+        names |= new
+        todo += [definitions[name] for name in new]
+    return [text for name, text in definitions.items() if name in names]
 
 
 @cache
 def _macro_definitions_by_name() -> dict[str, str]:
     """Return name -> definition of the macros for rules and for judging."""
-    both = f"{macro_definitions()}\n{statement_texts('statement_macros')['judging']}"
-    found = {}
-    for each in syntax.parser().extract_statements(both):
-        text = "\n".join(line for line in each.query.strip().splitlines() if line.strip() and not line.startswith("--"))
+    sources = f"{macro_definitions()}\n{statement_texts('statement_macros')['judging']}"
+    definitions = {}
+    for definition in syntax.parser().extract_statements(sources):
+        text = "\n".join(
+            line for line in definition.query.strip().splitlines() if line.strip() and not line.startswith("--")
+        )
         if match := _MACRO_PATTERN.search(text):
-            found[match[1].lower()] = text.rstrip().rstrip(";")
-    return found
+            definitions[match[1].lower()] = text.rstrip().rstrip(";")
+    return definitions
 
 
 def finding_sql_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     """Return the text of `finding.sql`. Run in its folder, it prints the finding's numbers."""
-    called = called_macro_definitions(sql)
-    spatial = any(_SPATIAL_CALL_PATTERN.search(text) for text in (sql, *called))
+    macros = called_macro_definitions(sql)
+    spatial = any(_SPATIAL_CALL_PATTERN.search(text) for text in (sql, *macros))
     numbers = ", ".join(f"{name} {_number_literal(finding[name])}" for name in COMPARED_FINDING_COLUMNS)
     lines = [
         f"-- Finding {finding['finding_id']} of the rule {rule.id}: {terminal_safe_line(rule.title)}",
@@ -120,7 +122,7 @@ def finding_sql_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) 
         lines.append("-- The rule asks for one step at which it holds. This is the step that comes nearest to it.")
     lines += ["INSTALL spatial;", "LOAD spatial;"] if spatial else []
     lines += [f"CREATE TEMP VIEW {table} AS FROM read_parquet('{table}.parquet');" for table in tables]
-    lines += [f"{text};" for text in called]
+    lines += [f"{text};" for text in macros]
     return "\n".join([*lines, f"{sql};", ""])
 
 

@@ -29,25 +29,25 @@ def request_with_present_paths(
 
     `log_paths`, `map_`: present paths of files that were moved. Errors: `UsageError` for a log or map that is missing or has another hash.
     """
-    given = {identify(path).sha256: path for path in log_paths if path.exists()}
-    if gone := [path for path in log_paths if not path.exists()]:
-        raise UsageError(f"--trace {gone[0]}: is not there")
-    wanted = {drive["sha256"] for drive in judged_drives(drives)}
-    if other := sorted(str(path) for digest, path in given.items() if digest not in wanted):
-        raise UsageError(f"{other[0]} is another log: no drive of this result has its hash")
-    found = {}
+    path_by_digest = {identify(path).sha256: path for path in log_paths if path.exists()}
+    if absent := [path for path in log_paths if not path.exists()]:
+        raise UsageError(f"--trace {absent[0]}: is not there")
+    digests = {drive["sha256"] for drive in judged_drives(drives)}
+    if strange := sorted(str(path) for digest, path in path_by_digest.items() if digest not in digests):
+        raise UsageError(f"{strange[0]} is another log: no drive of this result has its hash")
+    traces = {}
     for drive in judged_drives(drives):
         name, digest = drive["drive_id"], drive["sha256"]
-        path = given.get(digest) or Path(check_request.traces.get(name, ""))
-        if not path.exists() or (digest not in given and name not in check_request.traces):
+        path = path_by_digest.get(digest) or Path(check_request.traces.get(name, ""))
+        if not path.exists() or (digest not in path_by_digest and name not in check_request.traces):
             raise UsageError(f"the log of {name} is not at {path} any more: name its new path with --trace FILE")
-        if digest not in given and identify(path).sha256 != digest:
+        if digest not in path_by_digest and identify(path).sha256 != digest:
             raise UsageError(
                 f"{path} is another log than the one that was judged ({name}): name the right one with --trace"
             )
-        found[name] = str(path)
+        traces[name] = str(path)
     map_ = _present_map_path(check_request, drives, map_)
-    return replace(check_request, traces=found, map=map_, map_dir=check_request.map_dir if map_ is None else None)
+    return replace(check_request, traces=traces, map=map_, map_dir=check_request.map_dir if map_ is None else None)
 
 
 def _present_map_path(check_request: RunRequest, drives: Sequence[Row], map_: Path | None) -> Path | None:
@@ -60,7 +60,7 @@ def _present_map_path(check_request: RunRequest, drives: Sequence[Row], map_: Pa
         return None
     if not path.is_file():
         raise UsageError(f"the map {path} is not there any more: name its new path with --map FILE")
-    wanted = {drive["map_sha256"] for drive in judged_drives(drives)}
-    if sha256_of(path) not in wanted:
+    digests = {drive["map_sha256"] for drive in judged_drives(drives)}
+    if sha256_of(path) not in digests:
         raise UsageError(f"{path} is another map than the one used for judging: name the right one with --map")
     return path

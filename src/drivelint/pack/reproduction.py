@@ -47,15 +47,15 @@ def rules_of_result(result: Result, check_request: RunRequest) -> list[Rule]:
 
 def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
     """Return the rules of a table `rule`. Errors: `UsageError` for a rule that is not in the catalogue or was changed since."""
-    known = catalogue.load_rules(rules_dirs)
-    found = []
+    rules_by_id = catalogue.load_rules(rules_dirs)
+    selection = []
     for row in rules.to_pylist():
-        rule = known.get(row["rule_id"])
+        rule = rules_by_id.get(row["rule_id"])
         if rule is None or rule.version != row["rule_version"]:
-            what = "is not in the catalogue any more" if rule is None else "was changed since"
-            raise UsageError(f"rule {row['rule_id']} {what}: check the drives again")
-        found.append(msgspec.structs.replace(rule, is_named=row["is_named"]))
-    return found
+            state = "is not in the catalogue any more" if rule is None else "was changed since"
+            raise UsageError(f"rule {row['rule_id']} {state}: check the drives again")
+        selection.append(msgspec.structs.replace(rule, is_named=row["is_named"]))
+    return selection
 
 
 def check_again(
@@ -67,10 +67,10 @@ def check_again(
     Errors: `UsageError` for a rule that is not in the catalogue or was changed since, and the errors of a check.
     """
     rules = rules_of_result(result, check_request)
-    given = {
+    values = {
         name: getattr(check_request, name) for name in CheckOptions.__dataclass_fields__ if hasattr(check_request, name)
     }
-    given |= {
+    values |= {
         "traces": tuple(check_request.traces[name] for name in sorted(check_request.traces)),
         "rules": tuple(rule.id for rule in rules),
         "named_rules": tuple(rule.id for rule in rules if rule.is_named),
@@ -84,19 +84,19 @@ def check_again(
         "pictures": False,
         "evidence": evidence,
     }
-    return check(CheckOptions(**given), Silent())
+    return check(CheckOptions(**values), Silent())
 
 
 def param_values_by_rule(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
     """Return rule -> parameter -> value, for the given rules of a check."""
-    mine = list(rules)
-    names = {rule.id for rule in mine}
-    given = catalogue.parse_params(
-        mine, [p for p in check_request.params if p.partition("=")[0].rpartition(".")[0] in names]
+    rules_of_run = list(rules)
+    names = {rule.id for rule in rules_of_run}
+    settings = catalogue.parse_params(
+        rules_of_run, [p for p in check_request.params if p.partition("=")[0].rpartition(".")[0] in names]
     )
     return {
-        rule.id: {name: given.get(rule.id, {}).get(name, param.default) for name, param in rule.params.items()}
-        for rule in mine
+        rule.id: {name: settings.get(rule.id, {}).get(name, param.default) for name, param in rule.params.items()}
+        for rule in rules_of_run
     }
 
 
@@ -108,38 +108,38 @@ def evidence_of_findings(
     """Return the data that reproduce the numbers of each finding. `check_request` has the paths of the logs. `loaded_rules`: the rules of
     the result, if already loaded."""
     rules = {rule.id: rule for rule in loaded_rules or rules_of_result(result, check_request)}
-    found: Evidence = {}
+    evidence: Evidence = {}
     findings = result.findings.to_pylist()
-    for (drive_id, ego_id), mine in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
+    for (drive_id, ego_id), rows in group_rows(findings, lambda row: (row["drive_id"], row["ego_id"])).items():
         trace = Path(check_request.traces[drive_id])
         drive, _ = open_judged_drive_and_source_text(
             trace.parent, check_request, drive_id, ego_id, trace=trace, map_=check_request.map
         )
-        found |= _evidence_of_drive(drive, mine, rules, check_request)
-    return found
+        evidence |= _evidence_of_drive(drive, rows, rules, check_request)
+    return evidence
 
 
 def _evidence_of_drive(
     drive: Drive, findings: Sequence[Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> Evidence:
     """Return the evidence of the findings of one ego in one drive."""
-    mine = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
-    params = param_values_by_rule(mine, check_request)
-    found: Evidence = {}
+    broken_rules = [rules[name] for name in sorted({row["rule_id"] for row in findings})]
+    params = param_values_by_rule(broken_rules, check_request)
+    evidence: Evidence = {}
 
     def gather_evidence(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
-        for rule in mine:
+        for rule in broken_rules:
             rows = [row for row in findings if row["rule_id"] == rule.id]
-            found.update(_evidence_of_rule(con, rule, params[rule.id], rows))
+            evidence.update(_evidence_of_rule(con, rule, params[rule.id], rows))
 
     with store.temporary_database(DEFAULT_MEMORY_BYTES) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
         session = JudgingSession(
-            con, mine, params, None, observers=[gather_evidence], memory=MemoryLimit(con, DEFAULT_MEMORY_BYTES)
+            con, broken_rules, params, None, observers=[gather_evidence], memory=MemoryLimit(con, DEFAULT_MEMORY_BYTES)
         )
         session.judge([drive])
         session.close()
-    return found
+    return evidence
 
 
 def _evidence_of_rule(
@@ -193,5 +193,5 @@ def file_problems_and_whether_bytes_differ(
 
 def has_same_rows(a: bytes, b: bytes) -> bool:
     """Return whether two Parquet files have the same rows and column comments, even if their bytes differ."""
-    one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
-    return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))
+    first, second = (pq.read_table(io.BytesIO(content)) for content in (a, b))
+    return bool(first.schema.equals(second.schema, check_metadata=True) and first.equals(second))

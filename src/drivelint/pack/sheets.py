@@ -25,15 +25,15 @@ def sheets_of_result(folder: Path, result: Result, check_request: RunRequest) ->
     `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again.
     """
     ids = incident.possible_sheet_ids(result)
-    found = {}
+    sheets = {}
     for page in sorted((folder / incident.FOLDER).glob(f"*{_PAGE_SUFFIX}")):
         if page.stem in ids:
-            written = _sheet_page(folder, page.stem, check_request)
-            printed = page.with_suffix(_PDF_SUFFIX)
-            found[f"{SHEETS_FOLDER}/{page.name}"] = written
-            if printed.is_file() and page.read_bytes() == written:
-                found[f"{SHEETS_FOLDER}/{printed.name}"] = printed.read_bytes()
-    return found
+            content = _sheet_page(folder, page.stem, check_request)
+            pdf = page.with_suffix(_PDF_SUFFIX)
+            sheets[f"{SHEETS_FOLDER}/{page.name}"] = content
+            if pdf.is_file() and page.read_bytes() == content:
+                sheets[f"{SHEETS_FOLDER}/{pdf.name}"] = pdf.read_bytes()
+    return sheets
 
 
 def pages_written_again(
@@ -58,9 +58,9 @@ def has_sheet_as_pdf(evidence: Mapping[str, Any]) -> bool:
 def invalid_sheets(folder: Path, evidence: Mapping[str, Any], possible_ids: Iterable[str]) -> list[str]:
     """Return the files of sheets in `evidence.json` that belong to no finding or near miss, do not exist, or are a PDF without its page."""
     pages = {f"{SHEETS_FOLDER}/{sheet_id}{_PAGE_SUFFIX}" for sheet_id in possible_ids}
-    named = sheet_paths_in_evidence(evidence)
-    due = pages | {name.removesuffix(_PAGE_SUFFIX) + _PDF_SUFFIX for name in pages & set(named)}
-    return [name for name in named if name not in due or not (folder / name).is_file()]
+    paths = sheet_paths_in_evidence(evidence)
+    due = pages | {name.removesuffix(_PAGE_SUFFIX) + _PDF_SUFFIX for name in pages & set(paths)}
+    return [name for name in paths if name not in due or not (folder / name).is_file()]
 
 
 def _sheet_page(folder: Path, finding_id: str, check_request: RunRequest) -> bytes:

@@ -138,7 +138,7 @@ def _parse_envelope(envelope_bytes: bytes) -> tuple[str, bytes, list[bytes]]:
     try:
         envelope = json.loads(envelope_bytes)
         payload = base64.b64decode(envelope["payload"], validate=True)
-        signatures = [base64.b64decode(each["sig"], validate=True) for each in envelope["signatures"]]
+        signatures = [base64.b64decode(entry["sig"], validate=True) for entry in envelope["signatures"]]
         return str(envelope["payloadType"]), payload, signatures
     except (ValueError, KeyError, TypeError, RecursionError, binascii.Error) as error:
         raise EnvelopeError(str(error)) from error

@@ -67,12 +67,12 @@ def statement_problems(statement: bytes, due: bytes) -> list[bag.Problem]:
     try:
         a, b = json.loads(statement), json.loads(due)
         parts = ((a, b, ("_type", "predicateType")), (a["predicate"], b["predicate"], ()))
-        found = [key for left, right, keys in parts for key in keys or right if left.get(key) != right[key]]
+        keys_with_problem = [key for left, right, keys in parts for key in keys or right if left.get(key) != right[key]]
         logs = a["subject"] != b["subject"]
     except (ValueError, KeyError, TypeError, AttributeError):
         return [bag.Problem("statement not readable", ENVELOPE_FILE)]
     problems = [bag.Problem("statement about another log", "subject")] if logs else []
-    for key in found:
+    for key in keys_with_problem:
         if key == "drivelint_pack":
             problems += [
                 bag.Problem(bag.CHANGED_SINCE_STATEMENT, name)

@@ -39,14 +39,14 @@ def read_response(path: Path, envelope: bytes) -> bytes:
     """Return the time stamp response in a file. Errors: `UsageError` if the file is not a response, or not for this envelope."""
     try:
         content = path.read_bytes()
-        found = check_response(content, envelope, None)
+        outcome = check_response(content, envelope, None)
     except OSError as error:
         raise UsageError(f"--timestamp {path}: cannot be read: {error.strerror or error}") from error
     except ModuleNotFoundError as error:
         raise UsageError(_missing_package_text("--timestamp")) from error
-    if found.problems:
+    if outcome.problems:
         raise UsageError(
-            f"--timestamp {path}: {found.problems[0].kind}: pack without it, and let it be made of {ENVELOPE_FILE} in that pack"
+            f"--timestamp {path}: {outcome.problems[0].kind}: pack without it, and let it be made of {ENVELOPE_FILE} in that pack"
         )
     return content
 
@@ -74,16 +74,18 @@ def check_response(content: bytes, envelope: bytes, roots_file: Path | None) -> 
 
     try:
         response = decode_timestamp_response(_response_with_certificates_in_der_order(content))
-        told = response.tst_info
-        imprint, time = told.message_imprint, told.gen_time
+        info = response.tst_info
+        imprint, time = info.message_imprint, info.gen_time
     except (ValueError, IndexError, TypeError, AttributeError):
         return StampCheckResult([Problem("time stamp not readable", TIMESTAMP_FILE)])
     hashed = _HASH_BY_ALGORITHM_ID.get(imprint.hash_algorithm.dotted_string)
     if hashed is None or hashed(envelope).digest() != imprint.message:
         return StampCheckResult([Problem("time stamp of another statement", TIMESTAMP_FILE)])
-    shown = f"{time:%Y-%m-%dT%H:%M:%SZ}"
+    time_text = f"{time:%Y-%m-%dT%H:%M:%SZ}"
     if roots_file is None:
-        return StampCheckResult([], f"with a time stamp of {shown} (only --timestamp-root identifies its authority)")
+        return StampCheckResult(
+            [], f"with a time stamp of {time_text} (only --timestamp-root identifies its authority)"
+        )
     builder = VerifierBuilder(roots=_read_certificates(roots_file))
     try:
         builder.build().verify(response, imprint.message)
@@ -91,7 +93,7 @@ def check_response(content: bytes, envelope: bytes, roots_file: Path | None) -> 
         return StampCheckResult(
             [Problem("time stamp of an authority that is not trusted", f"{TIMESTAMP_FILE}: {error}")]
         )
-    return StampCheckResult([], f"existed by {shown}, as a trusted authority states")
+    return StampCheckResult([], f"existed by {time_text}, as a trusted authority states")
 
 
 def _response_with_certificates_in_der_order(content: bytes) -> bytes:
@@ -101,9 +103,9 @@ def _response_with_certificates_in_der_order(content: bytes) -> bytes:
     """
     start, end = 0, len(content)
     # the path of nested elements: response, token, content, signed data, certificates
-    for index, wanted in ((0, 0x30), (1, 0x30), (1, 0xA0), (0, 0x30), (3, 0xA0)):
+    for index, due_tag in ((0, 0x30), (1, 0x30), (1, 0xA0), (0, 0x30), (3, 0xA0)):
         tag, _, start, end = list(_der_elements(content, start, end))[index]
-        if tag != wanted:
+        if tag != due_tag:
             return content
     certificates = sorted(content[first:last] for _, first, _, last in _der_elements(content, start, end))
     return content[:start] + b"".join(certificates) + content[end:]

@@ -76,19 +76,19 @@ def verify(request: VerifyRequest) -> Verification:
 
 def _unmet_requirements(request: VerifyRequest) -> list[Problem]:
     """Return why a consistent pack does not meet the request: its signer is unknown, or the pack is too old."""
-    found = []
+    problems = []
     if request.require_signature and request.key is None:
-        what = (
+        lack = (
             "the key in the pack does not identify its owner"
             if (request.folder / ENVELOPE_FILE).is_file()
             else "it is not signed"
         )
-        found.append(Problem("nobody identified", f"{what}: use the signer's key with --key"))
+        problems.append(Problem("nobody identified", f"{lack}: use the signer's key with --key"))
     date = bag.bagging_date(request.folder)
     if request.not_before is not None and (date is None or date < request.not_before):
-        said = "without a date" if date is None else f"dated {date}"
-        found.append(Problem("older pack", f"{said}, but --not-before {request.not_before} was required"))
-    return found
+        age = "without a date" if date is None else f"dated {date}"
+        problems.append(Problem("older pack", f"{age}, but --not-before {request.not_before} was required"))
+    return problems
 
 
 def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
@@ -104,11 +104,11 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
 def _signature_problems_and_signer(folder: Path, required_key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
     """Return the problems of the signature and of the unsigned files beside it, and a phrase about the signer."""
     if not (folder / ENVELOPE_FILE).is_file():
-        wanted = required_key is not None or (folder / PUBLIC_KEY_FILE).is_file()
+        is_due = required_key is not None or (folder / PUBLIC_KEY_FILE).is_file()
         stamped = (
             [Problem("file added", timestamp.TIMESTAMP_FILE)] if (folder / timestamp.TIMESTAMP_FILE).is_file() else []
         )
-        return stamped + ([Problem("not signed", ENVELOPE_FILE)] if wanted else []), "not signed"
+        return stamped + ([Problem("not signed", ENVELOPE_FILE)] if is_due else []), "not signed"
     if not (folder / PUBLIC_KEY_FILE).is_file():
         return [Problem("file removed", PUBLIC_KEY_FILE)], ""
     try:
@@ -125,12 +125,12 @@ def _envelope_problems_and_signer(
 ) -> tuple[list[Problem], str]:
     """Return the problems of a signed envelope, and a phrase about the signer. `pack_key`: the key in the pack."""
     content, signer = (folder / ENVELOPE_FILE).read_bytes(), pack_key if required_key is None else required_key
-    by_own, by_signer = (signature.is_signed_by(content, each) for each in (pack_key, signer))
+    by_own, by_signer = (signature.is_signed_by(content, key) for key in (pack_key, signer))
     if not (by_own or by_signer):
         return [Problem("signature wrong", ENVELOPE_FILE)], ""
-    has, wanted = (signature.key_id(each)[:16] for each in (pack_key, signer))
+    has, due = (signature.key_id(key)[:16] for key in (pack_key, signer))
     if not by_signer:
-        return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
+        return [Problem("another key", f"signed by {has}, not by {due}, which was given")], ""
     wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY_FILE} is not the key that signed")]
     if not signature.is_canonical_envelope(content, signer):
         wrong.append(Problem("text beside the signed content", ENVELOPE_FILE))
@@ -139,8 +139,8 @@ def _envelope_problems_and_signer(
     if (folder / STATEMENT_FILE).is_file():
         wrong.append(Problem("file added", STATEMENT_FILE))
     if required_key is None:
-        return wrong, f"signed by the key in the pack ({wanted}; only --key identifies its owner)"
-    return wrong, f"signed by the key that was given ({wanted})"
+        return wrong, f"signed by the key in the pack ({due}; only --key identifies its owner)"
+    return wrong, f"signed by the key that was given ({due})"
 
 
 def _judging_phrase_problems_and_notes(
@@ -153,8 +153,8 @@ def _judging_phrase_problems_and_notes(
     try:
         check_request = _request_with_pack_paths(request.folder, evidence)
         if evidence["inputs"] is None and not request.traces:
-            wrong, told = consistency.check_sql_of_findings(request.folder, result, check_request)
-            notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {told}")
+            wrong, phrase = consistency.check_sql_of_findings(request.folder, result, check_request)
+            notes.insert(0, f"the logs are not in the pack: judged again only with --trace and --map; {phrase}")
             if sheets.sheet_paths_in_evidence(evidence):
                 notes.append("its incident sheets are as the pack says: they are written again only with the logs")
             return "not judged again", wrong, notes
@@ -207,7 +207,7 @@ def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunReque
     )
     if inputs is not None:
         map_, map_dir = (
-            path_inside_pack(folder, inputs[what]) if what in inputs else None for what in ("map", "map_dir")
+            path_inside_pack(folder, inputs[name]) if name in inputs else None for name in ("map", "map_dir")
         )
         traces = {name: str(path_inside_pack(folder, path)) for name, path in inputs["traces"].items()}
         check_request = replace(check_request, traces=traces, map=map_, map_dir=map_dir)

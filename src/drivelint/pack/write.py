@@ -57,15 +57,15 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
         request.out.parent.mkdir(parents=True, exist_ok=True)
         work = Path(mkdtemp(prefix=".drivelint.", dir=request.out.parent))
         try:
-            told = content.payload(work)
+            evidence = content.payload(work)
             info = {"External-Description": bag.DESCRIPTION.strip()}
             info |= {} if request.date is None else {"Bagging-Date": request.date}
             bag.write_info_and_manifest(work, {**info, "Bag-Software-Agent": f"drivelint {__version__}"})
-            said = content.statement(work, told)
+            statement = content.statement(work, evidence)
             if key is None:
-                (work / STATEMENT_FILE).write_bytes(said)
+                (work / STATEMENT_FILE).write_bytes(statement)
             else:
-                sealed = signature.signed_envelope(said, key)
+                sealed = signature.signed_envelope(statement, key)
                 (work / ENVELOPE_FILE).write_bytes(sealed)
                 if request.timestamp is not None:
                     (work / timestamp.TIMESTAMP_FILE).write_bytes(timestamp.read_response(request.timestamp, sealed))
@@ -79,7 +79,7 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
             shutil.rmtree(work, ignore_errors=True)
     except OSError as error:
         raise OutputError(f"{request.out}: cannot write the pack: {error.strerror or error}") from error
-    return told
+    return evidence
 
 
 def signing_key_of_valid_request(request: PackRequest) -> signature.SigningKey | None:
@@ -125,7 +125,7 @@ def _functions_that_pack_check_result(request: PackRequest) -> PackContentFuncti
     )
     return PackContentFunctions(
         lambda work: _write_payload_and_return_evidence(work, request, checked_result),
-        lambda work, told: in_toto_statement(work, result, packed_summary(work), told),
+        lambda work, values: in_toto_statement(work, result, packed_summary(work), values),
     )
 
 
@@ -139,7 +139,11 @@ def _write_payload_and_return_evidence(
     (pack_folder / RESULT_FOLDER).mkdir(parents=True)
     for path in copied:
         shutil.copyfile(path, pack_folder / RESULT_FOLDER / path.name)
-    reports = [each for each in REPORT_FORMATS.values() if (pack_folder / RESULT_FOLDER / each[0]).is_file()]
+    reports = [
+        report_format
+        for report_format in REPORT_FORMATS.values()
+        if (pack_folder / RESULT_FOLDER / report_format[0]).is_file()
+    ]
     # A report in the folder may differ from the tables, or link to files that the pack leaves out.
     for name, render in reports:
         (pack_folder / RESULT_FOLDER / name).write_bytes(render(replace(result, folder=pack_folder / RESULT_FOLDER)))
@@ -150,18 +154,18 @@ def _write_payload_and_return_evidence(
         (pack_folder / sheet).parent.mkdir(exist_ok=True)
         (pack_folder / sheet).write_bytes(content)
     copy_rule_files(rules, pack_folder)
-    named = (
+    selected = (
         check_request.mapping is not None and Path(check_request.mapping).is_file()
     )  # else a built-in mapping, or none
     mapping = (
         copy_into_new_folder(Path(str(check_request.mapping)), pack_folder / "data" / "mapping", pack_folder)
-        if named
+        if selected
         else None
     )
     inputs = _copy_inputs(pack_folder, check_request) if request.with_inputs else None
-    taken = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
-    left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in taken]
-    told = {
+    packed_paths = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
+    left = [path for path in sorted(request.folder.rglob("*")) if path.is_file() and path not in packed_paths]
+    evidence_file = {
         "evidence": contents.FORMAT_VERSION,
         **contents.evidence_values_of_result(pack_folder, result, check_request),
         "packed_with": contents.library_versions(),
@@ -172,18 +176,18 @@ def _write_payload_and_return_evidence(
         "findings": contents.finding_entries(result.findings.to_pylist(), evidence),
         "left_out": [path.relative_to(request.folder).as_posix() for path in left],
     }
-    (pack_folder / EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
-    return told
+    (pack_folder / EVIDENCE_FILE).write_bytes((json.dumps(evidence_file, indent=2, ensure_ascii=False) + "\n").encode())
+    return evidence_file
 
 
 def _copy_inputs(pack_folder: Path, check_request: RunRequest) -> dict[str, Any]:
     """Copy logs and map into the pack; return their paths in the pack."""
     inputs = pack_folder / "data" / "inputs"
-    told: dict[str, Any] = {"traces": {}}
+    paths: dict[str, Any] = {"traces": {}}
     for name, text in sorted(check_request.traces.items()):
-        told["traces"][name] = copy_into_new_folder(Path(text), inputs / "traces" / name, pack_folder)
-    for what in ("map", "map_dir"):
-        given = getattr(check_request, what)
-        if given is not None:
-            told[what] = copy_into_new_folder(given, inputs / what, pack_folder)
-    return told
+        paths["traces"][name] = copy_into_new_folder(Path(text), inputs / "traces" / name, pack_folder)
+    for option in ("map", "map_dir"):
+        source = getattr(check_request, option)
+        if source is not None:
+            paths[option] = copy_into_new_folder(source, inputs / option, pack_folder)
+    return paths

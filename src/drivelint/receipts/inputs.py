@@ -48,8 +48,8 @@ def path_state_if_known(path: str, is_output: IsOutput) -> str | None:
 
 def hash_of_matching_file_names(pattern: str, is_output: IsOutput) -> str:
     """Return the hash of the file names that a glob pattern matches."""
-    found = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
-    return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
+    names = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
+    return _hash(sorted(name for name in names if not is_output(os.path.realpath(name))))
 
 
 @dataclass(frozen=True)
@@ -61,15 +61,15 @@ class RunInputs:
 
     def are_unchanged(self, is_output: IsOutput) -> bool:
         """Return whether all inputs have the same state as before."""
-        names = all(hash_of_matching_file_names(pattern, is_output) == said for pattern, said in self.globs.items())
-        return names and all(path_state_if_known(path, is_output) == said for path, said in self.states.items())
+        names = all(hash_of_matching_file_names(pattern, is_output) == stored for pattern, stored in self.globs.items())
+        return names and all(path_state_if_known(path, is_output) == stored for path, stored in self.states.items())
 
 
 def _hash_of_listing(folder: str, real_folder: str, is_output: IsOutput) -> str:
     with os.scandir(folder) as entries:
-        shown = [entry for entry in entries if not is_output(os.path.join(real_folder, entry.name))]  # noqa: PTH118
-    told = [(entry.name, *_kind_and_link_target(entry)) for entry in sorted(shown, key=lambda entry: entry.name)]
-    return _hash(told)
+        inputs = [entry for entry in entries if not is_output(os.path.join(real_folder, entry.name))]  # noqa: PTH118
+    facts = [(entry.name, *_kind_and_link_target(entry)) for entry in sorted(inputs, key=lambda entry: entry.name)]
+    return _hash(facts)
 
 
 def _kind_and_link_target(entry: os.DirEntry[str]) -> tuple[str, str]:

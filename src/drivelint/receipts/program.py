@@ -58,25 +58,25 @@ def program_sha256() -> str:
 
 def _package_metadata_folders() -> list[str]:
     """Return the names of the metadata folders of installed packages, which contain name and version."""
-    found: list[str] = []
+    folders: list[str] = []
     for place in sys.path:
         try:
-            found += [name for name in os.listdir(place or ".") if name.endswith((".dist-info", ".egg-info"))]  # noqa: PTH208
+            folders += [name for name in os.listdir(place or ".") if name.endswith((".dist-info", ".egg-info"))]  # noqa: PTH208
         except OSError:
             continue
-    return sorted(found)
+    return sorted(folders)
 
 
 def receipt_key(arguments: Mapping[str, object]) -> str:
     """Return the hash of the program and of the request: the options, the working folder, the terminal, and the environment variables."""
-    asked = {
+    document = {
         "arguments": arguments,
         "folder": os.getcwd(),  # noqa: PTH109 - relative paths start there
         "stdout": [sys.stdout.encoding, sys.stdout.isatty(), _terminal_size()],
         "names": sys.getfilesystemencoding(),
         "environment": {name: os.environ.get(name) for name in ENVIRONMENT_VARIABLES},
     }
-    return sha256(f"{program_sha256()} {json.dumps(asked, sort_keys=True, default=str)}".encode()).hexdigest()
+    return sha256(f"{program_sha256()} {json.dumps(document, sort_keys=True, default=str)}".encode()).hexdigest()
 
 
 def _terminal_size() -> tuple[int, int] | None:

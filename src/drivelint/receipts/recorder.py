@@ -69,9 +69,9 @@ class InputRecorder:
             if inputs is None:
                 self.trouble = "a worker's part cannot be repeated"
                 return
-            for known, told in ((self._states, inputs.states), (self._globs, inputs.globs)):
-                for name, said in told.items():
-                    if known.setdefault(name, said) != said:
+            for own_states, added_states in ((self._states, inputs.states), (self._globs, inputs.globs)):
+                for name, state in added_states.items():
+                    if own_states.setdefault(name, state) != state:
                         self.trouble = f"{name} changed"
 
     def end_recording_and_return_inputs(self) -> RunInputs | None:
@@ -82,9 +82,9 @@ class InputRecorder:
         self._inside.busy = True  # from here on, nothing is recorded in this thread
         if self.trouble is not None:
             return None
-        read = {path: said for path, said in self._states.items() if said is not None}
-        found = RunInputs(read, dict(self._globs))
-        return found if found.are_unchanged(self.is_output) else None
+        states = {path: state for path, state in self._states.items() if state is not None}
+        inputs = RunInputs(states, dict(self._globs))
+        return inputs if inputs.are_unchanged(self.is_output) else None
 
     def record_event(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:
         """Record an audit event. It never raises an error, because that would affect the audited code."""

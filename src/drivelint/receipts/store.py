@@ -84,11 +84,11 @@ def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
         yield None
         return
     with file:
-        found = _read_receipt(file, key)
-        if found is not None:
+        opened_receipt = _read_receipt(file, key)
+        if opened_receipt is not None:
             with suppress(OSError):
                 os.utime(home / key)
-        yield found
+        yield opened_receipt
 
 
 def store_receipt(key: str, receipt: Receipt, out: Path | None) -> None:
@@ -124,8 +124,8 @@ def _write_receipt(target: IO[bytes], key: str, receipt: Receipt, files: Sequenc
         if target.tell() - before != size:
             raise OSError(f"{file}: its size changed after the run wrote it")
     target.flush()
-    with Path(target.name).open("rb") as written:
-        target.write(_hash_of(written, target.tell()))
+    with Path(target.name).open("rb") as content:
+        target.write(_hash_of(content, target.tell()))
 
 
 def _read_receipt(file: IO[bytes], key: str) -> OpenedReceipt | None:
@@ -159,9 +159,9 @@ def _hash_of(file: IO[bytes], size: int) -> bytes:
 
 def _remove_least_recently_used(home: Path) -> None:
     """Remove the least recently used receipts until the limits are met, including incomplete files of killed processes."""
-    known = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
+    receipts = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
     size = 0
-    for n, (_, path) in enumerate(known, 1):
+    for n, (_, path) in enumerate(receipts, 1):
         size += path.stat().st_size
         if n > MOST_KEPT_RECEIPTS or size > MOST_BYTES_OF_ALL_RECEIPTS:
             path.unlink(missing_ok=True)

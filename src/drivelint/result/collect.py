@@ -59,9 +59,9 @@ def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | Non
     row = dict.fromkeys(schema.names)
     row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged", "recorded")}
     row |= dict.fromkeys(("n_states", "n_steps", "n_egos"), 0)
-    said = {"drive_id": drive_id, "file_name": file_name, "status_reason": reason}
+    texts = {"drive_id": drive_id, "file_name": file_name, "status_reason": reason}
     row |= {
-        key: text.encode("utf-8", "backslashreplace").decode() for key, text in said.items()
+        key: text.encode("utf-8", "backslashreplace").decode() for key, text in texts.items()
     }  # a file name may contain any bytes
     row |= {"sha256": sha256, "km": 0.0, "lossy": False, "status": "not_judged"}
     return pa.Table.from_pylist([row], schema=schema)

@@ -26,8 +26,8 @@ class CompiledTemplates(BytecodeCache):
 
     def load_bytecode(self, bucket: Bucket) -> None:
         """Fill a bucket with the stored code."""
-        if (known := _TEMPLATE_MEMO.get(self._memo_key(bucket))) is not None:
-            bucket.bytecode_from_string(known)
+        if (bytecode := _TEMPLATE_MEMO.get(self._memo_key(bucket))) is not None:
+            bucket.bytecode_from_string(bytecode)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Store the compiled code."""

@@ -28,8 +28,8 @@ def verdict_counts(verdicts: pa.Table) -> dict[str, int]:
 
 def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int]:
     """Return value -> number of rows with this value in `column`, for each of `values`."""
-    found = {str(item["values"]): int(item["counts"]) for item in pc.value_counts(rows[column]).to_pylist()}
-    return {value: found.get(value, 0) for value in values}
+    count_by_value = {str(item["values"]): int(item["counts"]) for item in pc.value_counts(rows[column]).to_pylist()}
+    return {value: count_by_value.get(value, 0) for value in values}
 
 
 def count_verdicts_assuming(verdicts: pa.Table, assumption: str) -> int:
@@ -39,27 +39,27 @@ def count_verdicts_assuming(verdicts: pa.Table, assumption: str) -> int:
 
 def verdict_counts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     """Return value of the column `key` -> verdict -> number of rows, zeros included; values without rows give zeros."""
-    counted: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(VERDICTS, 0))
+    counts: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(VERDICTS, 0))
     for row in distinct_rows(verdicts, [key, "verdict"]):
-        counted[row[key]][row["verdict"]] = row["count_all"]
-    return counted
+        counts[row[key]][row["verdict"]] = row["count_all"]
+    return counts
 
 
 def verdict_counts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str, int]]:
     """Return pack -> verdict -> number of rows, zeros included, with the packs in the order of `rules`."""
-    told = verdict_counts_by(verdicts, "rule_id")
-    found: dict[str, dict[str, int]] = {}
+    counts_by_rule = verdict_counts_by(verdicts, "rule_id")
+    counts_by_pack: dict[str, dict[str, int]] = {}
     for rule in rules.select(["rule_id", "pack"]).to_pylist():
-        sums = found.setdefault(rule["pack"], dict.fromkeys(VERDICTS, 0))
-        for verdict, n in told[rule["rule_id"]].items():
+        sums = counts_by_pack.setdefault(rule["pack"], dict.fromkeys(VERDICTS, 0))
+        for verdict, n in counts_by_rule[rule["rule_id"]].items():
             sums[verdict] += n
-    return found
+    return counts_by_pack
 
 
 def distinct_rows(rows: pa.Table, columns: Sequence[str]) -> list[dict[str, Any]]:
     """Return the distinct rows of these columns, in the order of first occurrence, each with its number of rows as `count_all`."""
-    counted = rows.group_by(list(columns), use_threads=False).aggregate([([], "count_all")])
-    return list(counted.to_pylist())
+    row_counts = rows.group_by(list(columns), use_threads=False).aggregate([([], "count_all")])
+    return list(row_counts.to_pylist())
 
 
 def undecided_verdicts(verdicts: pa.Table) -> pa.Table:
@@ -83,33 +83,37 @@ def one_finding_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping
     rows = list(findings)
     return [
         row
-        for place, (row, counted) in enumerate(zip(rows, representative_indices(rows), strict=True))
-        if place == counted
+        for place, (row, representative) in enumerate(zip(rows, representative_indices(rows), strict=True))
+        if place == representative
     ]
 
 
 def representative_indices(findings: Sequence[Mapping[str, Any]]) -> list[int]:
     """Return for each finding the index of the finding that represents its event, see `one_finding_per_event`."""
     ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
-    seen: dict[tuple[str, str, frozenset[str | None]], list[int]] = defaultdict(list)
+    places_by_parties: dict[tuple[str, str, frozenset[str | None]], list[int]] = defaultdict(list)
     places = list(range(len(findings)))
     for place, row in ordered:
-        mine = seen[row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})]
-        places[place] = next((places[other] for other in mine if _is_same_event(findings[other], row)), place)
-        mine.append(place)
+        earlier_places = places_by_parties[
+            row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})
+        ]
+        places[place] = next(
+            (places[earlier] for earlier in earlier_places if _is_same_event(findings[earlier], row)), place
+        )
+        earlier_places.append(place)
     return places
 
 
 def severity_counts_text(findings: Iterable[Mapping[str, Any]]) -> str:
     """Return the number of findings of each severity as text; '' without findings."""
-    found = [row["severity"] for row in findings]
-    return ", ".join(f"{found.count(severity)} {severity}" for severity in SEVERITIES if severity in found)
+    severities = [row["severity"] for row in findings]
+    return ", ".join(f"{severities.count(severity)} {severity}" for severity in SEVERITIES if severity in severities)
 
 
 def extra_rows_sentence(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
     """Return why a table has more rows (`rows`) than there are findings (`events`); '' if the numbers are equal."""
-    told = {row["finding_id"] for row in events}
-    left_out = [row for row in rows if row["finding_id"] not in told]
+    event_ids = {row["finding_id"] for row in events}
+    left_out = [row for row in rows if row["finding_id"] not in event_ids]
     return rows_and_findings_sentence(
         len(rows), len(events), has_profile_repeats=any(row["profile"] is not None for row in left_out)
     )
@@ -122,9 +126,9 @@ def rows_and_findings_sentence(n_rows: int, n_findings: int, *, has_profile_repe
     """
     if n_rows == n_findings:
         return ""
-    what = "an overtake under two profiles" if has_profile_repeats else "a touch of two egos"
-    rows, found = plural(n_rows, "row"), plural(n_findings, "finding")
-    return f"{rows}, {found}: {what} counts once"
+    repetition = "an overtake under two profiles" if has_profile_repeats else "a touch of two egos"
+    rows, events = plural(n_rows, "row"), plural(n_findings, "finding")
+    return f"{rows}, {events}: {repetition} counts once"
 
 
 def _is_same_event(other_finding: Mapping[str, Any], finding: Mapping[str, Any]) -> bool:

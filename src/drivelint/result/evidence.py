@@ -72,8 +72,8 @@ def evidence_tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
 
 def _add_scenes(con: duckdb.DuckDBPyConnection) -> None:
     """Add the scenes of the batch that was just judged, and the danger spaces of the scenes."""
-    least, most = SCENE_RADIUS_RANGE_M
-    con.execute(statement("evidence/every_moment"), {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": most})
+    least, largest = SCENE_RADIUS_RANGE_M
+    con.execute(statement("evidence/every_moment"), {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": largest})
     counts = con.execute("SELECT ego_no, count(*) FROM _every_moment GROUP BY ego_no ORDER BY ego_no").fetchall()
     for first, end in _groups_of_egos(counts):
         con.execute(statement("evidence/moment"), {"first_no": first, "end_no": end})

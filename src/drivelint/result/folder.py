@@ -104,10 +104,10 @@ def _remove_empty_subfolders(out: Path, names: Iterable[str]) -> None:
 def _inode_and_mtime_ns(path: Path) -> tuple[int, int] | None:
     """Return inode and modification time, which distinguish a file from its replacement; None without a file."""
     try:
-        said = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return said.st_ino, said.st_mtime_ns
+    return status.st_ino, status.st_mtime_ns
 
 
 @contextmanager
@@ -181,7 +181,7 @@ def add_file(out: Path, name: str, content: bytes) -> None:
 
 def changed_files(out: Path) -> list[str]:
     """Return the names of the tables and the summary that were changed after drivelint wrote them; empty without stored hashes."""
-    return [name for name, said in _stored_hashes(out).items() if _sha256(out / name) != said]
+    return [name for name, stored_hash in _stored_hashes(out).items() if _sha256(out / name) != stored_hash]
 
 
 def folder_of_killed_run(out: Path) -> Path | None:
@@ -225,12 +225,12 @@ def _stored_hashes(out: Path) -> dict[str, str]:
 def hashes_in_manifest(content: bytes) -> dict[str, str]:
     """Return name -> sha256 from the content of `files.json`; empty for a damaged file or one of an older version."""
     try:
-        return {str(name): str(said) for name, said in json.loads(content)[_HASHES_KEY].items()}
+        return {str(name): str(digest) for name, digest in json.loads(content)[_HASHES_KEY].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
 
 
 def manifest_bytes(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
     """Return the content of `files.json` for the files of these names."""
-    said = {MANIFEST_FILES_KEY: sorted(names), **({_HASHES_KEY: hashes} if hashes else {})}
-    return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()
+    document = {MANIFEST_FILES_KEY: sorted(names), **({_HASHES_KEY: hashes} if hashes else {})}
+    return (json.dumps(document, indent=2, ensure_ascii=False) + "\n").encode()

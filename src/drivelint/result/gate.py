@@ -120,15 +120,15 @@ class Difference(msgspec.Struct, frozen=True):
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
-        found = Counter(entry.standing for entry in self.entries)
-        return {standing: found[standing] for standing in DIFF_STATUSES}
+        n_by_standing = Counter(entry.standing for entry in self.entries)
+        return {standing: n_by_standing[standing] for standing in DIFF_STATUSES}
 
     def event_counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, one per event; an event with a changed and an unchanged finding is changed."""
-        changed = {entry.event_key for entry in self.with_diff_status("changed")}
-        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.event_key not in changed]
-        found = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
-        return found | {"unchanged": n_findings(as_before)}
+        changed_events = {entry.event_key for entry in self.with_diff_status("changed")}
+        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.event_key not in changed_events]
+        n_by_status = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
+        return n_by_status | {"unchanged": n_findings(as_before)}
 
     def with_diff_status(self, status: str) -> list[ComparedFinding]:
         """Return the findings with this status."""
@@ -238,13 +238,13 @@ def load(folder: Path) -> Gate | None:
     """Return the gate of a result folder; None if it has no gate. Errors: `UsageError` for an unreadable `gate.json`."""
     path = folder / GATE_FILE
     try:
-        found = msgspec.json.decode(path.read_bytes(), type=_GateFile)
+        file = msgspec.json.decode(path.read_bytes(), type=_GateFile)
     except FileNotFoundError:
         return None
     except (OSError, msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: cannot be read as the gate of a result ({error}): check the drives again") from error
-    if found.gate_schema != GATE_VERSION:
+    if file.gate_schema != GATE_VERSION:
         raise UsageError(
-            f"{path}: written with gate schema {found.gate_schema}, this drivelint reads {GATE_VERSION}: check the drives again"
+            f"{path}: written with gate schema {file.gate_schema}, this drivelint reads {GATE_VERSION}: check the drives again"
         )
-    return found.gate
+    return file.gate

@@ -76,8 +76,8 @@ def _points_on_earth(rows: pa.Table) -> Geometries:
 def _points_from_columns(rows: pa.Table, x: str, y: str) -> Geometries:
     xy = np.column_stack([floats(rows[x]), floats(rows[y])])
     points = np.full(len(xy), None, object)
-    known = np.isfinite(xy).all(axis=1)
-    points[known] = shapely.points(xy[known])
+    has_place = np.isfinite(xy).all(axis=1)
+    points[has_place] = shapely.points(xy[has_place])
     return points
 
 
@@ -112,13 +112,13 @@ def _actor_box_areas(rows: pa.Table) -> Geometries:
     along, across = np.array([1, -1, -1, 1, 1]) * length[:, None] / 2, np.array([1, 1, -1, -1, 1]) * width[:, None] / 2
     cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     corners = np.stack([x[:, None] + along * cos - across * sin, y[:, None] + along * sin + across * cos], axis=-1)
-    known = np.isfinite(corners).all(axis=(1, 2))
-    boxes = shapely.polygons(corners[known])
-    covered = _geometries_by_row(shapely.multipolygons, boxes, row[known], rows.num_rows)
+    has_corners = np.isfinite(corners).all(axis=(1, 2))
+    boxes = shapely.polygons(corners[has_corners])
+    covered = _geometries_by_row(shapely.multipolygons, boxes, row[has_corners], rows.num_rows)
     overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # two actors are in contact
     covered[overlapping] = shapely.buffer(covered[overlapping], 0)
-    one = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
-    covered[one] = shapely.multipolygons(covered[one][:, None])
+    is_polygon = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
+    covered[is_polygon] = shapely.multipolygons(covered[is_polygon][:, None])
     return covered
 
 
@@ -143,15 +143,15 @@ def _geometries_by_row(
 
     With no parts at all, shapely would return an empty array, even with `out`.
     """
-    made = np.full(n, None, object)
-    return np.asarray(make(parts, indices=row, out=made)) if len(parts) else made
+    shapes = np.full(n, None, object)
+    return np.asarray(make(parts, indices=row, out=shapes)) if len(parts) else shapes
 
 
 def _known_points_and_their_rows(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the known positions, and the row of each position."""
     xy, offsets = _points_and_offsets(rows, "")
-    known = np.isfinite(xy).all(axis=1)
-    return xy[known], _row_of_points(offsets)[known]
+    has_place = np.isfinite(xy).all(axis=1)
+    return xy[has_place], _row_of_points(offsets)[has_place]
 
 
 def _points_and_offsets(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -40,9 +40,13 @@ def join_results(results: Sequence[Result]) -> Result:
             con.unregister("_rows")
     options = [result.run_options for result in results if result.run_options is not None]
     if options:
-        traces = {drive: path for each in reversed(options) for drive, path in each.traces.items()}
-        paths = {drive: path for each in reversed(options) for drive, path in each.relative_paths.items()}
-        manifest_options = {drive: mine for each in reversed(options) for drive, mine in each.manifest_options.items()}
+        traces = {drive: path for request in reversed(options) for drive, path in request.traces.items()}
+        paths = {drive: path for request in reversed(options) for drive, path in request.relative_paths.items()}
+        manifest_options = {
+            drive: options_of_drive
+            for request in reversed(options)
+            for drive, options_of_drive in request.manifest_options.items()
+        }
         tables["run_options"] = replace(
             options[0], traces=traces, relative_paths=dict(sorted(paths.items())), manifest_options=manifest_options
         )

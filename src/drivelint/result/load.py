@@ -41,7 +41,7 @@ def load_result(folder: Path) -> Result:
     tables |= {name: _table(path) for name in TABLE_OF_PICTURE_FILE if (path := folder / f"{name}.parquet").exists()}
     gate = gates.load(folder)
     try:
-        found = Result(
+        result = Result(
             **tables,
             fail_on=summary["fail_on"],
             strict=summary["strict"],
@@ -58,28 +58,28 @@ def load_result(folder: Path) -> Result:
         raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
     if wrong := changed_files(folder):
         raise UsageError(f"{folder / wrong[0]}: was changed since drivelint check wrote it: check the drives again")
-    return found
+    return result
 
 
 def _summary(folder: Path) -> dict[str, Any]:
     try:
-        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        meant = "" if folder.exists() else path_hint(folder)
+        suggestion = "" if folder.exists() else path_hint(folder)
         raise UsageError(
             f"{folder}: no result of drivelint check: summary.json {_file_problem_words(error)}: "
-            f"{meant or 'name the folder that check --out wrote'}"
+            f"{suggestion or 'name the folder that check --out wrote'}"
         ) from error
-    if isinstance(found, dict) and "digest" in found and (folder / "audit.json").is_file():
+    if isinstance(summary, dict) and "digest" in summary and (folder / "audit.json").is_file():
         raise UsageError(
             f"{folder}: this is an audit: give the drive's log to drivelint check with --out, and name that folder; "
             "its findings have the same ids"
         )
-    if not isinstance(found, dict) or not {"fail_on", "strict"} <= found.keys():
+    if not isinstance(summary, dict) or not {"fail_on", "strict"} <= summary.keys():
         raise UsageError(
             f"{folder}: no result of drivelint check: summary.json lacks fail_on or strict: name a folder of check --out"
         )
-    return found
+    return summary
 
 
 def _table(path: Path) -> pa.Table:

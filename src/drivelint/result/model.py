@@ -134,8 +134,8 @@ def _exit_statuses(result: Result) -> Iterator[ExitStatus]:
     yield from _lossy_status(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
-    if nothing := _why_nothing_decided(result):
-        yield ExitStatus(ExitCode.OK, f"{nothing}; no rule of the run is stable")
+    if undecided := _why_nothing_decided(result):
+        yield ExitStatus(ExitCode.OK, f"{undecided}; no rule of the run is stable")
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     unstable = _findings_of_unstable_rules_words(result)
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}{unstable}")
@@ -143,9 +143,9 @@ def _exit_statuses(result: Result) -> Iterator[ExitStatus]:
 
 def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
     """Yield exit code 4 for each kind of part that should have been judged but was not."""
-    if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
+    if n_not_judged := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
-            ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
+            ExitCode.NOT_JUDGED, f"{n_not_judged} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
     if (limited := _error_verdicts(result, beyond_limits=True)).num_rows:
         yield ExitStatus(
@@ -155,8 +155,8 @@ def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
-    if gone := gating_unfixed_findings(result):
-        yield ExitStatus(ExitCode.NOT_JUDGED, _unfixed_findings_sentence(result, gone))
+    if unfixed := gating_unfixed_findings(result):
+        yield ExitStatus(ExitCode.NOT_JUDGED, _unfixed_findings_sentence(result, unfixed))
     if (unknown := gating_unknowns(result)).num_rows:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_verdicts_sentence(result, unknown))
     if result.ended_early is not None:
@@ -183,8 +183,8 @@ def _rule_ids_text(rows: pa.Table) -> str:
 def _lossy_status(result: Result) -> Iterator[ExitStatus]:
     """Yield exit code 3 if parts of judged logs were lost."""
     if result.is_lossy:
-        judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-        absent = [words for drive in judged for words in ego_absence_texts(drive)]
+        judged_drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
+        absent = [words for drive in judged_drives for words in ego_absence_texts(drive)]
         more = f" and {plural(len(absent) - 1, 'more ego')}" if absent[1:] else ""
         why = "; ".join(["judged on lossy input: parts of a log were lost", *absent[:1]])
         yield ExitStatus(ExitCode.LOSSY, f"{why}{more}")
@@ -192,8 +192,8 @@ def _lossy_status(result: Result) -> Iterator[ExitStatus]:
 
 def interruption_sentence(drives: pa.Table) -> str:
     """Return how many drives an interrupted run has judged, in words. `drives`: its table `drive`."""
-    judged = int(pc.sum(pc.equal(drives["status"], "judged")).as_py() or 0)
-    return f"partial: {judged} of {plural(drives.num_rows, 'drive')} judged, interrupted"
+    n_judged = int(pc.sum(pc.equal(drives["status"], "judged")).as_py() or 0)
+    return f"partial: {n_judged} of {plural(drives.num_rows, 'drive')} judged, interrupted"
 
 
 def gating_findings(result: Result) -> pa.Table:
@@ -207,8 +207,8 @@ def gating_findings(result: Result) -> pa.Table:
 def gating_unfixed_findings(result: Result) -> list[ComparedFinding]:
     """Return the baseline's findings that cause exit code 4: of stable rules, severe enough, absent from the run but not fixed."""
     before = None if result.gate is None else result.gate.baseline
-    gone = [] if before is None else before.unfixed_findings()
-    return [entry for entry in gone if entry.stable and entry.severity in _gating_severities(result)]
+    entries = [] if before is None else before.unfixed_findings()
+    return [entry for entry in entries if entry.stable and entry.severity in _gating_severities(result)]
 
 
 def failures_without_finding(result: Result) -> pa.Table:
@@ -217,9 +217,11 @@ def failures_without_finding(result: Result) -> pa.Table:
     Baseline and waivers exempt findings, not verdicts: such a verdict causes exit code 1 if its rule is stable and severe enough.
     """
     keys = ["drive_id", "ego_id", "rule_id", "profile"]
-    told = {tuple(row.values()) for row in result.findings.select(keys).to_pylist()}
+    keys_of_findings = {tuple(row.values()) for row in result.findings.select(keys).to_pylist()}
     rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "fail"))
-    return rows.filter(pa.array([tuple(row.values()) not in told for row in rows.select(keys).to_pylist()], pa.bool_()))
+    return rows.filter(
+        pa.array([tuple(row.values()) not in keys_of_findings for row in rows.select(keys).to_pylist()], pa.bool_())
+    )
 
 
 def gating_unknowns(result: Result) -> pa.Table:
@@ -242,8 +244,8 @@ def gating_verdicts_lacking_signal(result: Result) -> pa.Table:
 
 def why_too_little_decided(result: Result) -> str | None:
     """Return why this run decided too little (exit code 4): nothing, or a smaller share than `min_judged`; None: it decided enough."""
-    if _rows_of_stable_rules(result, result.verdicts).num_rows and (nothing := _why_nothing_decided(result)):
-        return nothing
+    if _rows_of_stable_rules(result, result.verdicts).num_rows and (why := _why_nothing_decided(result)):
+        return why
     share = None if result.min_judged is None else decided_share(result.verdicts)
     if share is None or result.min_judged is None or share >= result.min_judged:
         return None
@@ -290,7 +292,9 @@ def _why_nothing_decided(result: Result) -> str | None:
 
 def ego_absence_texts(drive: Row) -> list[str]:
     """Return how long each ego of a drive is absent from its log, for absences that count as a loss. `drive`: a row of `drive`."""
-    return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT_CHECK]
+    return [
+        finding["message"].partition(",")[0] for finding in drive["quality"] if finding["check_id"] == EGO_ABSENT_CHECK
+    ]
 
 
 def map_misfit_reason(drive: Row) -> str | None:
@@ -298,9 +302,11 @@ def map_misfit_reason(drive: Row) -> str | None:
 
     `drive`: a row of the table `drive`.
     """
-    lost = {row["ego_id"]: str(row["reason"]) for row in drive["not_judged"] if row["reason_code"] in MAP_MISFIT_CODES}
+    reasons = {
+        row["ego_id"]: str(row["reason"]) for row in drive["not_judged"] if row["reason_code"] in MAP_MISFIT_CODES
+    }
     egos = [ego["ego_id"] for ego in drive["exposure"]]
-    return lost[egos[0]] if egos and lost.keys() >= set(egos) else None
+    return reasons[egos[0]] if egos and reasons.keys() >= set(egos) else None
 
 
 def _n_of_verdict(verdicts: pa.Table, verdict: str) -> int:
@@ -324,12 +330,12 @@ def _gating_severities(result: Result) -> tuple[str, ...]:
 
 def _failure_words(result: Result) -> str:
     """Return the reason for exit code 1, in words; '' for none."""
-    found, bare = (
+    failures, bare = (
         len(one_finding_per_event(gating_findings(result).to_pylist())),
         _severe_rows_of_stable_rules(result, failures_without_finding(result)).num_rows,
     )
     new = "new finding" if result.gate is not None and result.gate.baseline is not None else "finding"
-    parts = [plural(found, new)] if found else []
+    parts = [plural(failures, new)] if failures else []
     parts += [f"{plural(bare, 'failed verdict')} without a finding"] if bare else []
     return " and ".join(parts)
 
@@ -342,10 +348,16 @@ def _let_through_words(result: Result) -> str:
         _severe_rows_of_stable_rules(result, result.findings).to_pylist(),
         lambda row: gate.status_at_gate(row["finding_id"]),
     )
-    asked = {"known": gate.baseline is not None, "waived": bool(gate.waivers), "possible": gate.confidence is not None}
+    is_listed = {
+        "known": gate.baseline is not None,
+        "waived": bool(gate.waivers),
+        "possible": gate.confidence is not None,
+    }
     words = {"known": "known", "waived": "waived", "possible": "only possible"}
     through = [
-        f"{len(one_finding_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told
+        f"{len(one_finding_per_event(of_standing.get(name, ())))} {words[name]}"
+        for name, listed in is_listed.items()
+        if listed
     ]
     return f" (of that severity {', '.join(through)})" if through else ""
 
@@ -356,14 +368,14 @@ def _findings_of_unstable_rules_words(result: Result) -> str:
     gating = _gating_severities(result)
     severe = [row for row in result.findings.to_pylist() if row["severity"] in gating]
     n = len(one_finding_per_event([row for row in severe if row["finding_id"] not in stable]))
-    whose = "a rule that is not stable does" if n == 1 else "rules that are not stable do"
-    return f"; {plural(n, 'finding')} of {whose} not count" if n else ""
+    rules_text = "a rule that is not stable does" if n == 1 else "rules that are not stable do"
+    return f"; {plural(n, 'finding')} of {rules_text} not count" if n else ""
 
 
 def _unfixed_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return in words how many of the baseline's severe findings are absent but not fixed, and why."""
     by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED_WORDS}
-    why = [f"{n_findings(mine)} {NOT_FIXED_WORDS[status]}" for status, mine in by_status.items() if mine]
+    why = [f"{n_findings(entries)} {NOT_FIXED_WORDS[status]}" for status, entries in by_status.items() if entries]
     n = n_findings(unfixed)
     verb = "is" if n == 1 else "are"
     subject = f"{plural(n, 'finding')} of the baseline at or above severity {result.fail_on}"
@@ -375,10 +387,12 @@ def _unknown_verdicts_sentence(result: Result, unknown: pa.Table) -> str:
     if result.strict:
         rows = unknown.select(["rule_id", "reason_code"]).to_pylist()
         of_signal = group_rows(rows, lambda row: signal_name(row["reason_code"]))
-        n_rules = {name: len({row["rule_id"] for row in mine}) for name, mine in of_signal.items()}
+        n_rules = {name: len({row["rule_id"] for row in rows_of_signal}) for name, rows_of_signal in of_signal.items()}
         order = sorted(n_rules.items(), key=lambda item: (-item[1], item[0]))
         why = name_list([f"{name} ({plural(n, 'rule')})" for name, n in order])
         return f"{plural(unknown.num_rows, 'verdict')} unknown: {why} (--strict)"
     of_rules = pc.value_counts(unknown["rule_id"]).to_pylist()
-    told = [f"{each['counts']} of {each['values']}" for each in sorted(of_rules, key=lambda each: str(each["values"]))]
-    return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {name_list(told)}"
+    texts = [
+        f"{count['counts']} of {count['values']}" for count in sorted(of_rules, key=lambda count: str(count["values"]))
+    ]
+    return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {name_list(texts)}"

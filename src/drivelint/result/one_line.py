@@ -42,5 +42,5 @@ def nested_texts_on_one_line(value: Any) -> Any:
     if isinstance(value, str):
         return one_line(value)
     if isinstance(value, list | tuple):
-        return type(value)(nested_texts_on_one_line(each) for each in value)
-    return {key: nested_texts_on_one_line(each) for key, each in value.items()} if isinstance(value, dict) else value
+        return type(value)(nested_texts_on_one_line(item) for item in value)
+    return {key: nested_texts_on_one_line(item) for key, item in value.items()} if isinstance(value, dict) else value

@@ -41,11 +41,11 @@ class RunRequest(DriveInput):
 
     def of_drive(self, drive_id: str) -> RunRequest:
         """Return the request with the options of one drive."""
-        mine = self.manifest_options.get(drive_id)
+        own_options = self.manifest_options.get(drive_id)
         return (
             self
-            if mine is None
-            else replace(self, **{each.name: getattr(mine, each.name) for each in fields(DriveInput)})
+            if own_options is None
+            else replace(self, **{field.name: getattr(own_options, field.name) for field in fields(DriveInput)})
         )
 
     @classmethod
@@ -54,24 +54,27 @@ class RunRequest(DriveInput):
     ) -> RunRequest:
         """Return the request with the options of `check`, unchanged except for the traces."""
         apart = {"traces", *_JSON_KEY_OF_FIELD}
-        kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
+        values = {field.name: getattr(options, field.name) for field in fields(cls) if field.name not in apart}
         relative_paths = {
             drive: path
             for drive, path in sorted((name, _path_relative_to_workdir(path)) for name, path in traces.items())
             if path
         }
-        return cls(**kept, traces=traces, relative_paths=relative_paths, manifest_options=manifest_options or {})
+        return cls(**values, traces=traces, relative_paths=relative_paths, manifest_options=manifest_options or {})
 
 
 def render(run_options: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     content: dict[str, Any] = msgspec.to_builtins(run_options, enc_hook=str)
-    named = {_JSON_KEY_OF_FIELD.get(name, name): value for name, value in content.items() if name != "traces"}
-    plain = {"traces": {drive: _relative_path(path, out) for drive, path in sorted(content["traces"].items())}, **named}
+    options = {_JSON_KEY_OF_FIELD.get(name, name): value for name, value in content.items() if name != "traces"}
+    plain = {
+        "traces": {drive: _relative_path(path, out) for drive, path in sorted(content["traces"].items())},
+        **options,
+    }
     plain["rules_dirs"] = [_relative_path(path, out) for path in plain["rules_dirs"]]
     _make_paths_relative(plain, out)
-    for mine in plain["own"].values():
-        _make_paths_relative(mine, out)
+    for own_options in plain["own"].values():
+        _make_paths_relative(own_options, out)
     if not plain["own"]:
         del plain["own"]
     return (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
@@ -87,8 +90,8 @@ def load(folder: Path) -> RunRequest:
         plain = {"visibility": "none", "ego": None, "robustness": True} | json.loads(
             file.read_text(encoding="utf-8")
         )  # older results lack these keys
-        for each in (plain, *plain.get("own", {}).values()):
-            _join_paths_to_folder(folder, each)
+        for options in (plain, *plain.get("own", {}).values()):
+            _join_paths_to_folder(folder, options)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
         plain |= {field_: plain.pop(name) for field_, name in _JSON_KEY_OF_FIELD.items() if name in plain}

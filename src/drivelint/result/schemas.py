@@ -20,11 +20,11 @@ def conform(rows: pa.Table, table: str) -> pa.Table:
     Errors: `DriveLintError`, which names missing and additional columns.
     """
     schema = arrow_schemas()[table]
-    missing = sorted(set(schema.names) - set(rows.column_names))
+    lacking = sorted(set(schema.names) - set(rows.column_names))
     excess = sorted(set(rows.column_names) - set(schema.names))
-    if missing or excess:
+    if lacking or excess:
         raise DriveLintError(
-            f"table {table}: columns missing {missing}, in excess {excess}: it must be that of schemas/"
+            f"table {table}: columns missing {lacking}, in excess {excess}: it must be that of schemas/"
         )
     return rows.select(schema.names).cast(schema).combine_chunks()
 

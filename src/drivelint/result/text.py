@@ -84,8 +84,8 @@ def brief_id(actor_id: str) -> str:
 
 def ego_and_object_names(row: Row) -> str:
     """Return the names of the ego and, if any, the object of a verdict or finding."""
-    who = ego_name(row["ego_id"]) if row["ego_id"] else "no ego"
-    return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
+    ego = ego_name(row["ego_id"]) if row["ego_id"] else "no ego"
+    return f"{ego}, object {row['object_id']}" if row["object_id"] is not None else ego
 
 
 def measured_values_text(row: Row) -> str:
@@ -99,9 +99,9 @@ def measured_values_text(row: Row) -> str:
 
 def tolerance(row: Row, rule: Row) -> float | None:
     """Return the rule's tolerance within the required value, in the row's unit; None if there is none, or it is the whole value."""
-    told = [p for p in rule["params"] if p["name"].startswith("tolerance_") and p["unit"] == row["unit"]]
-    given = float(told[0]["value"]) if told else 0.0
-    return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
+    parameters = [p for p in rule["params"] if p["name"].startswith("tolerance_") and p["unit"] == row["unit"]]
+    value = float(parameters[0]["value"]) if parameters else 0.0
+    return None if not value or row["required"] is None or math.isclose(row["required"], value) else value
 
 
 def verdict_or_finding_line(row: Row, when: str) -> str:
@@ -109,8 +109,8 @@ def verdict_or_finding_line(row: Row, when: str) -> str:
 
     The measured values are omitted if the reason contains them.
     """
-    measured = "" if row["reason_measures"] else measured_values_text(row)
-    parts = [f"{when}: {ego_and_object_names(row)}", measured, row["reason"], doubt_words(row)]
+    values_text = "" if row["reason_measures"] else measured_values_text(row)
+    parts = [f"{when}: {ego_and_object_names(row)}", values_text, row["reason"], doubt_words(row)]
     return "; ".join(part for part in parts if part)
 
 

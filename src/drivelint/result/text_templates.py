@@ -44,6 +44,6 @@ def cell(value: Any) -> Any:
 
 
 _FILTERS: Final[dict[str, Callable[..., Any]]] = {
-    each.__name__: each
-    for each in (cell, ego_name, number, plural, rule_name, seconds, ego_and_object_names, with_count)
+    function.__name__: function
+    for function in (cell, ego_name, number, plural, rule_name, seconds, ego_and_object_names, with_count)
 }

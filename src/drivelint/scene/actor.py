@@ -96,10 +96,10 @@ class Actor:
 
     def _motion_on_track(self, t: Floats) -> MotionSamples:
         times, x, y = np.array(self.text.track, float).T
-        held = np.clip(t, times[0], times[-1])
+        time_on_track = np.clip(t, times[0], times[-1])
         if len(times) < 2:
             raise UsageError(f"actor {self.name}: a track needs at least two points")
-        px, py = _smooth_curve_values(times, x, held), _smooth_curve_values(times, y, held)
+        px, py = _smooth_curve_values(times, x, time_on_track), _smooth_curve_values(times, y, time_on_track)
         vx, vy = np.gradient(px, DT_S), np.gradient(py, DT_S)
         moving = np.hypot(vx, vy) > _LEAST_SPEED_FOR_HEADING_MPS
         along = np.unwrap(np.arctan2(vy, vx)[moving]) if moving.any() else np.zeros(1)
@@ -109,9 +109,9 @@ class Actor:
     def _motion_of_poses(self, t: Floats, x: Floats, y: Floats, z: Floats, yaw: Floats) -> MotionSamples:
         vx, vy = np.gradient(x, DT_S), np.gradient(y, DT_S)
         if self.text.heading is not None:
-            given = self.text.heading
+            heading = self.text.heading
             yaw = np.radians(
-                np.interp(t, *_times_and_values([[0.0, given]] if isinstance(given, int | float) else given))
+                np.interp(t, *_times_and_values([[0.0, heading]] if isinstance(heading, int | float) else heading))
             )
         elif self.text.facing == "back":
             yaw = yaw + math.pi
@@ -120,16 +120,16 @@ class Actor:
         return MotionSamples(t, x, y, ground, yaw, vx, vy, push)
 
     def _lanes_of_route(self) -> list[tuple[str, int]]:
-        named = [self.text.lane] if self.text.lane else self.text.route
-        return [road_and_lane_number(text, self.roads) for text in named]
+        texts = [self.text.lane] if self.text.lane else self.text.route
+        return [road_and_lane_number(text, self.roads) for text in texts]
 
     def _path(self) -> ActorPath:
         text = self.text
-        given = [name for name in ("lane", "route", "path", "track", "place") if getattr(text, name)]
-        if len(given) != 1:
-            said = " and ".join(given) or "none"
+        keys = [name for name in ("lane", "route", "path", "track", "place") if getattr(text, name)]
+        if len(keys) != 1:
+            keys_text = " and ".join(keys) or "none"
             raise UsageError(
-                f"actor {self.name}: one of lane, route, path, track and place must define its place, but here {said} does"
+                f"actor {self.name}: one of lane, route, path, track and place must define its place, but here {keys_text} does"
             )
         if text.place:
             x, y, heading = text.place
@@ -184,8 +184,8 @@ class Actor:
         else:
             begin = self._begin_of_step_s(step, speed)
         now = float(np.interp(begin, *_times_and_values(speed)))
-        kept = [knot for knot in speed if knot[0] < begin]
-        return [*kept, [begin, now], [begin + max(abs(target - now) / step.by, DT_S), target]]
+        earlier = [knot for knot in speed if knot[0] < begin]
+        return [*earlier, [begin, now], [begin + max(abs(target - now) / step.by, DT_S), target]]
 
     def _offset_from_own_to_lane_m(self, lane_number: int) -> float:
         lanes = self._lanes_of_route()

@@ -257,9 +257,9 @@ def _parse_scene_file(path: Path) -> SceneFile:
     if not isinstance(raw, dict):
         raise UsageError(f"{path}:1: a file of scenes has the keys roads and scenes")
     _set_lines_of_scenes(raw, root)
-    found = [(_line_of(root, problem.keys), problem.message) for problem in problems(raw, SceneFile)]
-    if found:
-        raise SceneFileError("\n".join(f"{path}:{line}: {message}" for line, message in sorted(found)))
+    wrong = [(_line_of(root, problem.keys), problem.message) for problem in problems(raw, SceneFile)]
+    if wrong:
+        raise SceneFileError("\n".join(f"{path}:{line}: {message}" for line, message in sorted(wrong)))
     try:
         return msgspec.convert(raw, SceneFile, strict=True)
     except msgspec.ValidationError as error:

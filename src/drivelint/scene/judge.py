@@ -67,8 +67,8 @@ class VerdictsOfScenes(NamedTuple):
 
     def verdict(self, key: Key) -> str:
         """Return the verdict of a rule on a scene: the worst verdict of its rows."""
-        found = {row["verdict"] for row in self.rows.get(key, ())}
-        return next((verdict for verdict in _VERDICTS_WORST_FIRST if verdict in found), NOT_JUDGED)
+        verdicts = {row["verdict"] for row in self.rows.get(key, ())}
+        return next((verdict for verdict in _VERDICTS_WORST_FIRST if verdict in verdicts), NOT_JUDGED)
 
     def reason_codes_of_verdict(self, key: Key) -> set[str]:
         """Return the reason codes of the rows with the worst verdict."""
@@ -93,11 +93,11 @@ def reason_codes(row: Row) -> set[str]:
 
 def expectation(text: str) -> Expectation:
     """Read an expectation, such as `fail: it touches the car`. Errors: `UsageError`."""
-    found = _EXPECTATION.fullmatch(text.strip())
-    verdict = found["verdict"] if found else text.partition(":")[0]
-    if found is None or verdict not in _VERDICTS_BY_EXPECTATION:
+    match = _EXPECTATION.fullmatch(text.strip())
+    verdict = match["verdict"] if match else text.partition(":")[0]
+    if match is None or verdict not in _VERDICTS_BY_EXPECTATION:
         raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _VERDICTS_BY_EXPECTATION)}")
-    return Expectation(verdict, found["code"], found["why"] or "")
+    return Expectation(verdict, match["code"], match["why"] or "")
 
 
 def judge_scenes(
@@ -172,8 +172,8 @@ def scene_test(
     texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
     if not texts:
         near = [word for name in only if (word := nearest_word(name, (text.name for text in file.scenes)))]
-        meant = f"; did you mean {near[0]!r}?" if near else ""
-        raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name{meant}")
+        suggestion = f"; did you mean {near[0]!r}?" if near else ""
+        raise UsageError(f"{path}: none of its {len(file.scenes)} scenes has such a name{suggestion}")
     rules = catalogue.load_rules(tuple(rules_dirs))
     scenes = scenes_of(texts, file.roads)
     _refuse_wrong_expectations(path, texts, rules)
@@ -192,8 +192,8 @@ def scene_test(
     code = ExitCode.OK
     for scene in scenes:
         wrong = list(differences(scene, verdicts, gating))
-        told = f"{'FAIL' if wrong else 'ok  '} {scene.name}: {plural(len(scene.text.expect), 'verdict')}"
-        say("\n".join([told, *(f"     {path}:{scene.text.line}: {line}" for line in wrong)]))
+        headline = f"{'FAIL' if wrong else 'ok  '} {scene.name}: {plural(len(scene.text.expect), 'verdict')}"
+        say("\n".join([headline, *(f"     {path}:{scene.text.line}: {line}" for line in wrong)]))
         code = max(code, ExitCode.FAILED if wrong else ExitCode.OK)
     return code
 
@@ -214,9 +214,9 @@ def _unknown_rule_message(rule_id: str, rules: Mapping[str, Rule]) -> str:
     packs = {rule.pack for rule in rules.values()}
     if dot and pack not in packs:
         near = nearest_word(pack, packs)
-        meant = f"; did you mean {near!r}?" if near else ""
-        return f"no rule {rule_id!r}, as there is no pack {pack!r}{meant}: give its folder with --rules-dir"
-    holding = min((each for each in rules if (name or pack) in each), key=len, default=None)
+        suggestion = f"; did you mean {near!r}?" if near else ""
+        return f"no rule {rule_id!r}, as there is no pack {pack!r}{suggestion}: give its folder with --rules-dir"
+    holding = min((known_id for known_id in rules if (name or pack) in known_id), key=len, default=None)
     near = holding or nearest_word(rule_id, rules, cutoff=0.75)
     return f"no rule {rule_id!r}; {f'did you mean {near!r}?' if near else 'drivelint rules list shows them all'}"
 
@@ -226,11 +226,11 @@ def _refuse_wrong_expectations(path: Path, texts: Sequence[SceneEntry], rules: M
     problems = []
     for text in texts:
         place = f"{path}:{text.line}: scene {text.name!r}: "
-        for rule, said in text.expect.items():
+        for rule, text_of_verdict in text.expect.items():
             if rule not in rules:
                 problems.append(f"{place}expect: {_unknown_rule_message(rule, rules)}")
             try:
-                expectation(said)
+                expectation(text_of_verdict)
             except UsageError as error:
                 problems.append(f"{place}{error}")
     if problems:

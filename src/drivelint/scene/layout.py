@@ -62,9 +62,9 @@ def roads_of(layout: RoadLayout) -> dict[str, Road]:
 
 def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
     """Return the name of the road and the number of the lane in a text such as `main -1`. Errors: `UsageError`."""
-    if (found := _ROAD_AND_LANE_NUMBER.fullmatch(text.strip())) is None:
+    if (match := _ROAD_AND_LANE_NUMBER.fullmatch(text.strip())) is None:
         raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
-    name, number = found[1], int(found[2])
+    name, number = match[1], int(match[2])
     if name not in roads:
         raise UsageError(f"no road {name!r}: {hint(name, roads)}")
     roads[name].lane(number)
@@ -124,10 +124,10 @@ def _road(name: str, text: RoadEntry, roads: Mapping[str, Road]) -> Road:
 def _refuse_unknown_words(name: str, text: RoadEntry, lanes: Sequence[Lane]) -> None:
     """Raise `UsageError` for unknown words of things, lanes and marks."""
     for thing in text.things:
-        what, _, rest = thing.kind.partition(" ")
-        if what in _FORMS_OF_NAMED_THINGS and not rest:
-            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORMS_OF_NAMED_THINGS[what]}")
-        if what not in _FORMS_OF_NAMED_THINGS and thing.kind not in _KINDS_OF_THINGS:
+        word, _, rest = thing.kind.partition(" ")
+        if word in _FORMS_OF_NAMED_THINGS and not rest:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORMS_OF_NAMED_THINGS[word]}")
+        if word not in _FORMS_OF_NAMED_THINGS and thing.kind not in _KINDS_OF_THINGS:
             raise UsageError(f"road {name}: what: {thing.kind!r}: {hint(thing.kind, _KINDS_OF_THINGS)}")
     for lane in lanes:
         if lane.kind not in _LANE_KINDS:
@@ -141,10 +141,10 @@ def _refuse_unknown_words(name: str, text: RoadEntry, lanes: Sequence[Lane]) -> 
 
 def _lanes(texts: Iterable[str | LaneEntry], sign: int, length: float) -> list[Lane]:
     texts = list(texts)
-    driven = [n for n, text in enumerate(texts) if _lane_kind(text) in DRIVABLE_KINDS]
+    drivable = [n for n, text in enumerate(texts) if _lane_kind(text) in DRIVABLE_KINDS]
     lanes = []
     for n, text in enumerate(texts):
-        usual = "broken" if n in driven and n != driven[-1] else "solid" if n in driven else "none"
+        usual = "broken" if n in drivable and n != drivable[-1] else "solid" if n in drivable else "none"
         if isinstance(text, str):
             kind, width, mark = _kind_width_mark(text)
             marks, start, end = [(0.0, mark or usual)], 0.0, length
@@ -180,18 +180,18 @@ def _all_turns(roads: Mapping[str, Road]) -> list[tuple[str, int, str, int]]:
     ends = [(road.name, lane.number) for road in roads.values() for lane in road.lanes if lane.kind == "driving"]
     arriving = [(name, number) for name, number in ends if number < 0]
     leaving = [(name, number) for name, number in ends if number > 0]
-    return [(*one, *other) for one in arriving for other in leaving if one[0] != other[0]]
+    return [(*entry, *exit_) for entry in arriving for exit_ in leaving if entry[0] != exit_[0]]
 
 
 def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, str, int]]) -> dict[str, Road]:
     """Return a road for each turn; turns that share an end of a road belong to the same junction."""
     group: dict[tuple[str, bool], int] = {}
     for a, n, b, m in turns:
-        one, other = (a, n > 0), (b, m < 0)
-        number = min(group.get(one, len(group) + 1), group.get(other, len(group) + 1))
-        merged = {group[end] for end in (one, other) if end in group}
-        group |= {end: number for end, old in group.items() if old in merged}
-        group |= {one: number, other: number}
+        first, second = (a, n > 0), (b, m < 0)
+        number = min(group.get(first, len(group) + 1), group.get(second, len(group) + 1))
+        numbers = {group[end] for end in (first, second) if end in group}
+        group |= {end: number for end, old in group.items() if old in numbers}
+        group |= {first: number, second: number}
     turn_roads = {}
     for a, n, b, m in turns:
         before, behind = roads[a], roads[b]

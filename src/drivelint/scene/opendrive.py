@@ -94,7 +94,7 @@ class _Writer:
             for lane in lanes:
                 number = numbers[n][lane.number]
                 links = (("predecessor", before.get(lane.number)), ("successor", behind.get(lane.number)))
-                link = "".join(f'<{end_} id="{-self.hand * other}"/>' for end_, other in links if other)
+                link = "".join(f'<{end_} id="{-self.hand * neighbour}"/>' for end_, neighbour in links if neighbour)
                 lane_id = -self.hand * number
                 sides[1 if lane_id > 0 else -1].append((lane_id, self.lane_element(lane, lane_id, link, (s, end))))
             left, right = ("".join(text for _, text in sorted(sides[side], reverse=True)) for side in (1, -1))
@@ -131,9 +131,9 @@ class _Writer:
         name = road.after if end == "predecessor" else self.after.get(road.name)
         if name is None:
             return {}
-        other = self.roads[name]
-        station = other.length - 1e-6 if end == "predecessor" else 0.0
-        return _numbers_without_gaps([lane for lane in other.lanes if lane.start <= station < lane.end])
+        road_beyond = self.roads[name]
+        station = road_beyond.length - 1e-6 if end == "predecessor" else 0.0
+        return _numbers_without_gaps([lane for lane in road_beyond.lanes if lane.start <= station < lane.end])
 
     def link_elements(self, road: Road) -> str:
         if turn := road.turn:
@@ -143,12 +143,12 @@ class _Writer:
                 "successor", turn.to_road, to_end
             )
         text = ""
-        for end, other, contact in (
+        for end, road_beyond, contact in (
             ("predecessor", road.after, "end"),
             ("successor", self.after.get(road.name), "start"),
         ):
-            if other:
-                text += self.road_link_element(end, other, contact)
+            if road_beyond:
+                text += self.road_link_element(end, road_beyond, contact)
             elif junction := self.junction_at(road, end):
                 text += f'<{end} elementType="junction" elementId="{junction}"/>'
         return text
@@ -169,22 +169,24 @@ class _Writer:
         return None
 
     def junction_elements(self) -> str:
-        found: dict[int, str] = defaultdict(str)
+        connections: dict[int, str] = defaultdict(str)
         for n, (road, turn) in enumerate(self.roads_with_turns()):
             link = f'<laneLink from="{-self.hand * turn.from_lane}" to="{-self.hand}"/>'
             ends = f'incomingRoad="{self.numbers[turn.from_road]}" connectingRoad="{self.numbers[road.name]}" contactPoint="start"'
-            found[turn.junction] += f'<connection id="{n}" {ends}>{link}</connection>'
-        return "".join(f'<junction id="{number}" name="junction">{text}</junction>' for number, text in found.items())
+            connections[turn.junction] += f'<connection id="{n}" {ends}>{link}</connection>'
+        return "".join(
+            f'<junction id="{number}" name="junction">{text}</junction>' for number, text in connections.items()
+        )
 
     def new_id(self) -> int:
         self.things += 1
         return 5000 + self.things
 
     def signal_element(self, thing: RoadThing) -> str:
-        what, _, rest = thing.kind.partition(" ")
-        if what == "light":
+        word, _, rest = thing.kind.partition(" ")
+        if word == "light":
             number, (country, code), dynamic = rest, _LIGHT_COUNTRY_AND_CODE, "yes"
-        elif what == "sign":
+        elif word == "sign":
             country, _, code = rest.partition(" ") if " " in rest else ("", "", _NO_CODE)
             number, dynamic = str(self.new_id()), "no"
         else:
@@ -234,8 +236,8 @@ def _symmetric_width_without_sidewalks_m(road: Road) -> float:
 
 def _numbers_without_gaps(lanes: Sequence[Lane]) -> dict[int, int]:
     """Return lane number -> number without gaps among the given lanes: 1, 2, ... or -1, -2, ... from the middle outwards."""
-    found: dict[int, int] = {}
+    number_by_lane: dict[int, int] = {}
     for side in (1, -1):
         numbers = sorted((lane.number for lane in lanes if lane.number * side > 0), key=abs)
-        found |= {number: side * n for n, number in enumerate(numbers, 1)}
-    return found
+        number_by_lane |= {number: side * n for n, number in enumerate(numbers, 1)}
+    return number_by_lane

@@ -105,9 +105,9 @@ def _states_with_faults(
         if len(still):
             x[still], y[still] = x[still[0]], y[still[0]]
     for begin, end, ahead, aside in faults.shift:
-        moved = _mask_of_span(t, begin, end)
-        x[moved] += ahead * np.cos(yaw[moved]) - aside * np.sin(yaw[moved])
-        y[moved] += ahead * np.sin(yaw[moved]) + aside * np.cos(yaw[moved])
+        in_span = _mask_of_span(t, begin, end)
+        x[in_span] += ahead * np.cos(yaw[in_span]) - aside * np.sin(yaw[in_span])
+        y[in_span] += ahead * np.sin(yaw[in_span]) + aside * np.cos(yaw[in_span])
     if faults.jitter:
         draw = np.random.default_rng(seed)
         x, y, vx, vy = (column + draw.normal(0.0, faults.jitter, len(column)) for column in (x, y, vx, vy))
@@ -124,12 +124,12 @@ def _indicator_and_brake_light(
     actor: Actor, motion: MotionSamples, indices: Any
 ) -> tuple[list[str | None], list[str | None]]:
     t, text = motion.t[indices], actor.text
-    who = f"actor {actor.name}"
+    owner = f"actor {actor.name}"
     if text.kind not in CLASSES_WITH_LIGHTS:
         return [None] * len(t), [None] * len(t)
-    indicator = light_states(text.indicator, t, INDICATORS, f"{who}: indicator")
+    indicator = light_states(text.indicator, t, INDICATORS, f"{owner}: indicator")
     if text.brake is not None:
-        return indicator, light_states(text.brake, t, BRAKE_LIGHTS, f"{who}: brake")
+        return indicator, light_states(text.brake, t, BRAKE_LIGHTS, f"{owner}: brake")
     push, speed = motion.push[indices], np.hypot(motion.vx, motion.vy)[indices]
     strong = push < -_STRONG_BRAKING_MPS2
     braking = (push < -BRAKE_LIGHT_DECELERATION_MPS2) | (speed < _STANDING_MPS)

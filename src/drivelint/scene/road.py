@@ -95,9 +95,9 @@ class Road:
         s = min(max(s, lane.start), lane.end - 1e-6)
         sign = int(math.copysign(1, lane.number))
         inner = sum(
-            other.width
-            for other in self.lanes
-            if 0 < other.number * sign < lane.number * sign and other.start <= s < other.end
+            neighbour.width
+            for neighbour in self.lanes
+            if 0 < neighbour.number * sign < lane.number * sign and neighbour.start <= s < neighbour.end
         )
         return -sign * (inner + lane.width / 2)
 
@@ -251,8 +251,8 @@ def lanes_with_junction_lanes_between(
     roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]
 ) -> list[tuple[str, int]]:
     """Return the lanes, and between them the lanes of the junctions that connect them."""
-    found = list(lanes[:1])
+    route = list(lanes[:1])
     for (before, n), (behind, m) in pairwise(lanes):
-        found += [(road.name, 1) for road in roads.values() if road.turn and road.turn[1:] == (before, n, behind, m)]
-        found.append((behind, m))
-    return found
+        route += [(road.name, 1) for road in roads.values() if road.turn and road.turn[1:] == (before, n, behind, m)]
+        route.append((behind, m))
+    return route

@@ -84,13 +84,13 @@ class Scene:
         return {**log, MAP_FILE: self.map_text.encode()}
 
     def _condition_rows(self) -> list[dict[str, Any]]:
-        given = {
+        conditions = {
             name: value for name, value in (DEFAULT_CONDITIONS | self.text.conditions).items() if value != NOT_IN_LOG
         }
-        for condition, value in given.items():
+        for condition, value in conditions.items():
             if problem := condition_problem(condition) or value_problem(condition, value):
                 raise UsageError(f"given: {problem}")
-        return [{"condition": name, "value": value} for name, value in given.items()]
+        return [{"condition": name, "value": value} for name, value in conditions.items()]
 
     def _event_rows(self) -> list[dict[str, Any]]:
         events = []
@@ -111,9 +111,9 @@ def scenes_of(texts: Sequence[SceneEntry], layouts: Mapping[str, RoadLayout]) ->
     for text in texts:
         layout = layouts[text.roads]
         side = text.traffic or layout.traffic
-        for one in ("right", "left") if side == "both" else (side,):
-            name = f"{text.name}-{one}" if side == "both" else text.name
-            scenes.append(Scene(text, layout, one == "left", name))
+        for hand in ("right", "left") if side == "both" else (side,):
+            name = f"{text.name}-{hand}" if side == "both" else text.name
+            scenes.append(Scene(text, layout, hand == "left", name))
     return scenes
 
 

@@ -49,16 +49,16 @@ def problems(raw: Any, kind: Any, keys: tuple[str | int, ...] = ()) -> Iterator[
         return
     kinds = _alternative_types(kind)
     if isinstance(raw, dict):
-        for struct in (each for each in kinds if isinstance(each, type) and issubclass(each, msgspec.Struct)):
+        for struct in (part for part in kinds if isinstance(part, type) and issubclass(part, msgspec.Struct)):
             yield from _problems_of_struct(raw, struct, keys)
-        for each in kinds:
-            if get_origin(each) is dict:
+        for part in kinds:
+            if get_origin(part) is dict:
                 for name, value in raw.items():
-                    yield from problems(value, get_args(each)[1], (*keys, name))
+                    yield from problems(value, get_args(part)[1], (*keys, name))
     elif isinstance(raw, list):
-        for each in kinds:
-            if get_origin(each) in {list, tuple}:
-                item_types = [item for item in get_args(each) if item is not Ellipsis]
+        for part in kinds:
+            if get_origin(part) in {list, tuple}:
+                item_types = [item for item in get_args(part) if item is not Ellipsis]
                 for n, value in enumerate(raw):
                     yield from problems(value, item_types[min(n, len(item_types) - 1)], (*keys, n))
 
@@ -66,14 +66,14 @@ def problems(raw: Any, kind: Any, keys: tuple[str | int, ...] = ()) -> Iterator[
 def _kind_problem(raw: Any, kind: Any) -> str | None:
     """Return what is wrong with a value itself, in words: its kind, its length, or its word; None: nothing."""
     kinds = _alternative_types(kind)
-    known = {_kind_of_type(each) for each in kinds}
-    if _kind_of_value(raw) not in known:
+    kind_names = {_kind_of_type(part) for part in kinds}
+    if _kind_of_value(raw) not in kind_names:
         here = "nothing" if raw is None else f"{raw!r} is {_kind_of_value(raw)}"
-        return f"{here}: write {' or '.join(sorted(known - {'nothing'}))} (drivelint docs scenes)"
+        return f"{here}: write {' or '.join(sorted(kind_names - {'nothing'}))} (drivelint docs scenes)"
     length = _exact_length(kind)
     if isinstance(raw, list) and length not in {None, len(raw)}:
         return f"{raw} has {plural(len(raw), 'value')}: write {length}"
-    words = [word for each in kinds if get_origin(each) is Literal for word in get_args(each)]
+    words = [word for part in kinds if get_origin(part) is Literal for word in get_args(part)]
     if isinstance(raw, str) and str not in kinds and words and raw not in words:
         return f"{raw!r}: {hint(raw, words)}"
     return None
@@ -86,18 +86,18 @@ def _dotted_name(keys: tuple[str | int, ...]) -> str:
 def _problems_of_struct(
     raw: dict[str, Any], struct: type[msgspec.Struct], keys: tuple[str | int, ...]
 ) -> Iterator[Problem]:
-    known = _type_by_key(struct)
-    if raw.keys() <= known.keys():
+    types = _type_by_key(struct)
+    if raw.keys() <= types.keys():
         for name in sorted(_required_keys(struct) - raw.keys()):
             yield Problem(
                 keys, f"{_dotted_name(keys) or 'the file'}: the key {name!r} is missing (drivelint docs scenes)"
             )
     for key, value in raw.items():
         place = (*keys, key)
-        if key in known:
-            yield from problems(value, known[key], place)
+        if key in types:
+            yield from problems(value, types[key], place)
         else:
-            near = hint(str(key), [name for name in known if name != _FILLED_IN])
+            near = hint(str(key), [name for name in types if name != _FILLED_IN])
             yield Problem(place, f"unknown key {_dotted_name((*keys, str(key)))!r}: {near}")
 
 
@@ -138,5 +138,5 @@ def _alternative_types(kind: Any) -> list[Any]:
     if get_origin(kind) is Annotated:
         return _alternative_types(get_args(kind)[0])
     if get_origin(kind) in {Union, UnionType}:
-        return [each for part in get_args(kind) for each in _alternative_types(part)]
+        return [alternative for part in get_args(kind) for alternative in _alternative_types(part)]
     return [kind]

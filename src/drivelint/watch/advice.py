@@ -33,18 +33,18 @@ class ProfileAdvice:
                 and row["t_ref_ns"] is not None
             ):
                 occasions[tuple(row[name] for name in _REFERENCE)][row["profile"]] = row["verdict"]
-        found = []
+        messages = []
         for key, verdicts in sorted(occasions.items(), key=str):
             if key in self._told or not {"pass", "fail"} & set(verdicts.values()):
                 continue
             self._told.add(key)
             order = sorted(verdicts, key=lambda name: self._style_by_profile[name])
-            kept = next((name for name in order if verdicts[name] == "pass"), None)
-            found.append({
+            keeping_mode = next((name for name in order if verdicts[name] == "pass"), None)
+            messages.append({
                 "type": "mode",
                 **dict(zip(_REFERENCE, key, strict=True)),
                 "t_s": round((key[-1] - drive_start_ns) / 1e9, 6),
-                "mode": kept,
+                "mode": keeping_mode,
                 "verdicts": {name: verdicts[name] for name in order},
             })  # fmt: skip
-        return found
+        return messages

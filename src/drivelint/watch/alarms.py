@@ -56,11 +56,11 @@ class Alarm:
 
     def is_continued_by(self, row: Row, gap_ns: int) -> bool:
         """Return whether a finding of another window, or of the whole log, is the finding of this alarm or continues it."""
-        mine = self.row
-        if mine["t_ref_ns"] is not None or row["t_ref_ns"] is not None:
-            refs = mine["t_ref_ns"], row["t_ref_ns"]
+        own_row = self.row
+        if own_row["t_ref_ns"] is not None or row["t_ref_ns"] is not None:
+            refs = own_row["t_ref_ns"], row["t_ref_ns"]
             return None not in refs and abs(refs[0] - refs[1]) <= SAME_REFERENCE_POINT_TOLERANCE_NS
-        return bool(row["t_start_ns"] <= self.t_end_ns + gap_ns and row["t_end_ns"] >= mine["t_start_ns"] - gap_ns)
+        return bool(row["t_start_ns"] <= self.t_end_ns + gap_ns and row["t_end_ns"] >= own_row["t_start_ns"] - gap_ns)
 
 
 @dataclass(frozen=True)
@@ -93,14 +93,14 @@ class AlarmLog:
         """Add the contacts in the newest frames, up to the step at `now_ns`, and return the new alarms."""
         new: list[Alarm] = []
         for row in rows:
-            same = [each for each in self._standing if self._is_same_finding(each, row)]
+            same = [alarm for alarm in self._standing if self._is_same_finding(alarm, row)]
             if not same:
                 same = [Alarm(len(self.alarms), row, now_ns, row["t_end_ns"], is_early=True)]
                 new += same
                 self.alarms += same
                 self._standing += same
-            for each in same:
-                each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
+            for alarm in same:
+                alarm.t_end_ns = max(alarm.t_end_ns, row["t_end_ns"])
         return new
 
     def add_window(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> AlarmChanges:
@@ -116,7 +116,7 @@ class AlarmLog:
         for row in _findings_with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
-            same = [each for each in self._standing if self._is_same_finding(each, row)]
+            same = [alarm for alarm in self._standing if self._is_same_finding(alarm, row)]
             if not same:
                 alarm = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
                 fails_now = is_first or (judged_until_ns is not None and row["t_end_ns"] > judged_until_ns)
@@ -125,16 +125,16 @@ class AlarmLog:
                 for alarms in (self.alarms, self._standing, new):
                     alarms.append(alarm)
                 same = [alarm]
-            for each in same:
-                each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
-                shown_numbers.add(each.number)
+            for alarm in same:
+                alarm.t_end_ns = max(alarm.t_end_ns, row["t_end_ns"])
+                shown_numbers.add(alarm.number)
         withdrawn = self._withdraw_missing_alarms(window, shown_numbers, known_from_ns)
-        self._standing = [each for each in self._standing if each not in withdrawn]
+        self._standing = [alarm for alarm in self._standing if alarm not in withdrawn]
         over = self._mark_alarms_over(window.t_end_ns)
         self._standing = [
-            each
-            for each in self._standing
-            if not each.is_over or each.t_end_ns + self._allowed_gap_ns(each) >= window.t_start_ns
+            alarm
+            for alarm in self._standing
+            if not alarm.is_over or alarm.t_end_ns + self._allowed_gap_ns(alarm) >= window.t_start_ns
         ]
         return AlarmChanges(new, over, withdrawn)
 
@@ -147,27 +147,27 @@ class AlarmLog:
             for row in window.verdicts.select(["rule_id", "ego_id", "profile", "verdict"]).to_pylist()
             if row["verdict"] in {"error", "unknown"}
         }
-        found = [
-            each
-            for each in self._standing
-            if each.number not in shown_numbers
-            and each.needed_from_ns >= known_from_ns
-            and each.row["t_start_ns"] <= window.t_end_ns
-            and not {(*finding_key(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent
+        alarms = [
+            alarm
+            for alarm in self._standing
+            if alarm.number not in shown_numbers
+            and alarm.needed_from_ns >= known_from_ns
+            and alarm.row["t_start_ns"] <= window.t_end_ns
+            and not {(*finding_key(alarm.row)[:2], profile) for profile in (None, alarm.row["profile"])} & silent
         ]
-        for alarm in found:
+        for alarm in alarms:
             alarm.withdrawn_ns = window.t_end_ns
-        return found
+        return alarms
 
     def _mark_alarms_over(self, now_ns: int) -> list[Alarm]:
         """Return the alarms whose rule is kept again; an alarm that continues later can be over a second time."""
-        found = []
-        for each in self._standing:
-            ended = now_ns > each.t_end_ns + self._allowed_gap_ns(each)
-            if ended and not each.is_over:
-                found.append(each)
-            each.is_over = ended
-        return found
+        ending = []
+        for alarm in self._standing:
+            ended = now_ns > alarm.t_end_ns + self._allowed_gap_ns(alarm)
+            if ended and not alarm.is_over:
+                ending.append(alarm)
+            alarm.is_over = ended
+        return ending
 
     def _allowed_gap_ns(self, alarm: Alarm) -> int:
         return self._gaps_ns[alarm.row["rule_id"]]
@@ -185,10 +185,12 @@ class AlarmLog:
             by_key.setdefault(finding_key(alarm.row), []).append(alarm)
         left = []
         for row in _findings_with_reference_times(findings, verdicts):
-            mine = [each for each in by_key.get(finding_key(row), []) if self._is_same_finding(each, row)]
-            for alarm in mine:
+            alarms = [
+                candidate for candidate in by_key.get(finding_key(row), []) if self._is_same_finding(candidate, row)
+            ]
+            for alarm in alarms:
                 alarm.finding_ids.append(row["finding_id"])
-            if not mine:
+            if not alarms:
                 left.append(row)
         return left
 

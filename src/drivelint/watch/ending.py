@@ -54,11 +54,11 @@ def check_recording(
     if halted is None or watch.watched.halted_ns is None:
         return result
     drive_start_ns = result.drives["t_start_ns"][0].as_py() or 0
-    told = (
+    note = (
         f"halted at {(watch.watched.halted_ns - drive_start_ns) / NS_PER_S:.2f} s by an alarm of {halted.row['rule_id']} "
         f"at {(halted.row['t_start_ns'] - drive_start_ns) / NS_PER_S:.2f} s"
     )
-    return replace(result, halted=told, notes=(*result.notes, told))
+    return replace(result, halted=note, notes=(*result.notes, note))
 
 
 def report_outcome_and_return_counts_text(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
@@ -66,10 +66,10 @@ def report_outcome_and_return_counts_text(result: Result, watch: Watch, emit: Ca
     missed = watch.alarms.assign_findings_and_return_unassigned(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.alarm_outcome(alarm))
-    late, other = watch.settled.late_and_revised_rows(result.verdicts)
+    late, revised = watch.settled.late_and_revised_rows(result.verdicts)
     for row in late:
         emit(messages.late_verdict(row))
-    for row in other:
+    for row in revised:
         emit(messages.revised_verdict(row))
     status = exit_status(result)
     alarms = watch.alarms.alarms
@@ -77,7 +77,7 @@ def report_outcome_and_return_counts_text(result: Result, watch: Watch, emit: Ca
         "n_windows": len(watch.watched.busy_s),
         "n_windows_not_judged": watch.watched.n_unjudged,
         "n_verdicts_said_before_the_end": len(watch.settled),
-        "n_verdicts_revised": len(other),
+        "n_verdicts_revised": len(revised),
         "n_alarms": len(alarms),
         "n_alarms_withdrawn": sum(alarm.withdrawn_ns is not None for alarm in alarms),
         "n_alarms_that_are_findings": sum(bool(alarm.finding_ids) for alarm in alarms),

@@ -83,11 +83,11 @@ class WindowJudge:
     """
 
     def __init__(self, options: WatchOptions) -> None:
-        self._known = known = catalogue.load_rules(options.rules_dirs)
+        self._known = rules_by_id = catalogue.load_rules(options.rules_dirs)
         self._library = MapLibrary(options)
         self._library.read_user_map()
-        chosen = selectors_of_run(options.rules, options.rules_dirs, options, self._library)
-        rules = catalogue.select_rules(known, chosen, options.ignore)
+        selectors = selectors_of_run(options.rules, options.rules_dirs, options, self._library)
+        rules = catalogue.select_rules(rules_by_id, selectors, options.ignore)
         self.rules: dict[str, Rule] = {rule.id: rule for rule in rules}
         self._params = params = catalogue.parse_params(rules, options.params)
         profiles = load_profiles(options.rules_dirs)
@@ -96,11 +96,11 @@ class WindowJudge:
             for rule in rules
         }
         self.profiles = options.profiles or DEFAULT_PROFILES
-        asked = profiles.keys() if options.advise else self.profiles
+        profile_names = profiles.keys() if options.advise else self.profiles
         self.style_by_profile = {name: profile.style for name, profile in profiles.items()}
         self._stack = ExitStack()
         self._con = self._stack.enter_context(store.temporary_database(options.memory, threads=1))
-        store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
+        store.insert(self._con, "profile", profile_table(profiles, sorted(profile_names)))
         self._memory = MemoryLimit(self._con, options.memory)
         # the session writes courses only if it has an observer
         observers = [_observe_nothing] if options.warn or options.serve else []
@@ -112,11 +112,11 @@ class WindowJudge:
 
     def contact_finder(self) -> ContactFinder | None:
         """Return an object that finds contacts in frames that are not judged yet; None: no rule on contacts is selected."""
-        asked = tuple(rule_id for rule_id in contact.CONTACT_RULES if rule_id in self.rules)
-        if not asked:
+        rule_ids = tuple(rule_id for rule_id in contact.CONTACT_RULES if rule_id in self.rules)
+        if not rule_ids:
             return None
         # a cursor of its own, which a rule's time limit does not interrupt
-        return ContactFinder(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
+        return ContactFinder(self._stack.enter_context(self._con.cursor()), self._known, rule_ids, self._params)
 
     def judge(self, traces: Sequence[Trace], drive_start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
         """Judge windows together; return the result of each, or the error that prevents it. Raise only errors that concern all windows.
@@ -125,14 +125,14 @@ class WindowJudge:
         """
         store.recreate_empty(self._con, [t for t in declarations.tables_of_lifetime("run") if t not in _LASTING_TABLES])
         self._session.forget_judged_logs()
-        found: dict[str, JudgedWindow | DriveLintError] = {}
+        outcomes: dict[str, JudgedWindow | DriveLintError] = {}
         drives: dict[str, Drive] = {}
         for no, trace in enumerate(traces):
             name = f"{no:06}"
             try:
                 drive = drive_with_map(replace(trace, path=Path(name)), self._library)
             except DriveLintError as error:
-                found[name] = error
+                outcomes[name] = error
             else:
                 drives[name] = replace(
                     drive, trace=_trace_with_drive_start(with_drive_id(drive.trace, name), drive_start_ns)
@@ -140,21 +140,23 @@ class WindowJudge:
         refusals: list[RefusedLog] = []
         if drives:
             judge_and_refuse_faulty(self._session, list(drives.values()), refusals)
-        found |= {each.path.name: each.error for each in refusals}
+        outcomes |= {refusal.path.name: refusal.error for refusal in refusals}
         tables = {
             "findings": collect.findings(self._con),
             "verdicts": collect.verdicts(self._con),
             "courses": self._con.execute("FROM course ORDER BY ALL").to_arrow_table(),
         }
         for name in drives:
-            if name not in found:
+            if name not in outcomes:
                 log = traces[int(name)].tables["data_log"]
-                own = {key: rows.filter(pc.equal(rows["drive_id"], name)) for key, rows in tables.items()}
-                found[name] = JudgedWindow(log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **own)
+                tables_of_window = {key: rows.filter(pc.equal(rows["drive_id"], name)) for key, rows in tables.items()}
+                outcomes[name] = JudgedWindow(
+                    log["t_start_ns"][0].as_py(), log["t_end_ns"][0].as_py(), **tables_of_window
+                )
         self._n_passes += 1
         if self._n_passes % PASSES_PER_RELEASE == 0:
             self._memory.release_unused_memory()
-        return [found[name] for name in sorted(found)]
+        return [outcomes[name] for name in sorted(outcomes)]
 
     def __enter__(self) -> Self:
         return self

@@ -100,10 +100,10 @@ def alarm_outcome(alarm: Alarm) -> Message:
 
 def settled_verdict(row: Row, drive_start_ns: int) -> Message:
     """Return the message of a verdict that is reported before the log's end."""
-    said = {
+    values = {
         name: _null_if_not_finite(row[name]) for name in (*IDENTIFYING_VERDICT_COLUMNS, *OTHER_REPORTED_VERDICT_COLUMNS)
     }
-    return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns), **said}
+    return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], drive_start_ns), **values}
 
 
 def late_verdict(row: Row) -> Message:

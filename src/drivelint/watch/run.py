@@ -135,8 +135,8 @@ class Watch:
         self._has_begun = False
         self._unseen: list[Frame] = []
         self._look_at_s = 0.0
-        known = catalogue.load_rules(options.rules_dirs)
-        self._triggers = triggers.parse(options.on, known, self._judge.rules)
+        rules_by_id = catalogue.load_rules(options.rules_dirs)
+        self._triggers = triggers.parse(options.on, rules_by_id, self._judge.rules)
         self._folder = self._stack.enter_context(temporary_folder())
         self._ingest = options.ingest_options()
         self._window = Window(round(options.window_s * NS_PER_S))
@@ -154,8 +154,8 @@ class Watch:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        for each in self._triggers:
-            each.wait_for_running_commands()
+        for trigger in self._triggers:
+            trigger.wait_for_running_commands()
         self._stack.close()
 
     def watch(self) -> WatchOutcome:
@@ -166,7 +166,7 @@ class Watch:
         child = ChildProgram(self._options.command) if self._options.command else None
         try:
             self._loop(child)
-            for text in filter(None, [each.note_on_left_out_alarms() for each in self._triggers]):
+            for text in filter(None, [trigger.note_on_left_out_alarms() for trigger in self._triggers]):
                 self._emit(messages.note(text))
             if child is not None and self.watched.halted is None and not self._interruption.requested:
                 code = child.wait_or_end()
@@ -268,17 +268,17 @@ class Watch:
         def judge_window() -> _WindowOutcome:
             trace = None
             try:
-                trace = read()
+                trace = read_window()
                 outcome = self._judge.judge([trace], drive_start_ns)[0]
             except Exception as error:  # noqa: BLE001 - whatever error a window causes, the recording must still be checked
                 outcome = refusal_of(Path(self._options.source), error).error
             return _WindowOutcome(trace, outcome, time.perf_counter() - begun_s)
 
         try:
-            read = self._source.window_reader(frames, self._folder, self._ingest)
+            read_window = self._source.window_reader(frames, self._folder, self._ingest)
         except Exception as error:  # noqa: BLE001 - as above
-            judged = refusal_of(Path(self._options.source), error).error
-            return lambda: _WindowOutcome(None, judged, 0.0)
+            failure = refusal_of(Path(self._options.source), error).error
+            return lambda: _WindowOutcome(None, failure, 0.0)
         return judge_window
 
     def _report_window_outcome(self, window_outcome: _WindowOutcome) -> None:
@@ -300,8 +300,8 @@ class Watch:
         """Report why the log so far cannot be judged; not again for a text that differs only in its numbers."""
         self.watched.n_unjudged += 1
         text = str(error).replace(str(self._folder), "...")
-        if (what := re.sub(r"\d+", "0", text)) != self._doubt:
-            self._doubt = what
+        if (doubt := re.sub(r"\d+", "0", text)) != self._doubt:
+            self._doubt = doubt
             self._emit(messages.note(f"not judged yet: {text}"))
 
     def _report_judged_window(self, judged_window: JudgedWindow) -> None:
@@ -337,14 +337,14 @@ class Watch:
 
     def _report_alarms(self, alarms: Sequence[Alarm], now_ns: int, drive_start_ns: int) -> None:
         """Report alarms, start the commands for them, and halt the source if one of the alarms requires it."""
-        said = []
+        alarm_messages = []
         for alarm in alarms:
-            said.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], drive_start_ns))
-            self._emit(said[-1])
+            alarm_messages.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], drive_start_ns))
+            self._emit(alarm_messages[-1])
             if self._server is not None:
-                self._server.publish_alarm(said[-1])
+                self._server.publish_alarm(alarm_messages[-1])
         for trigger in self._triggers:
-            if (trouble := trigger.run_for_alarms_and_return_note(said)) is not None:
+            if (trouble := trigger.run_for_alarms_and_return_note(alarm_messages)) is not None:
                 self._emit(messages.note(trouble))
         halting = next((alarm for alarm in alarms if self._is_halting_alarm(alarm)), None)
         if halting is not None:

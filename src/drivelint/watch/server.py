@@ -103,8 +103,8 @@ class LiveServer:
 
     def notes(self) -> list[str]:
         """Return the new notes on the address and on refused clients."""
-        found, self._notes = self._notes, []
-        return [*found, *self._server.notes()]
+        own_notes, self._notes = self._notes, []
+        return [*own_notes, *self._server.notes()]
 
     def publish_scene(self, trace_window: Trace) -> None:
         """Publish the boxes of all actors at the newest step of a window; they replace the boxes shown before."""
@@ -128,8 +128,8 @@ class LiveServer:
     def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Publish judged steps, each on the topic of its rule; `rows` have columns of `margins.parquet`."""
         for row in rows:
-            told = {name: value for name, value in row.items() if name != "drive_id"}
-            self._publish_json(self._margin_channel(row["rule_id"]), told, row["t_ns"])
+            content = {name: value for name, value in row.items() if name != "drive_id"}
+            self._publish_json(self._margin_channel(row["rule_id"]), content, row["t_ns"])
 
     def close(self) -> None:
         """Disconnect the viewers and end the server. May be called twice."""
@@ -145,8 +145,8 @@ class LiveServer:
 
     def _publish_json(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
-        known = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
-        self._server.publish(channel, msgspec.json.encode(known), self._clock_for(t_ns).log_time_at(t_ns))
+        content = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
+        self._server.publish(channel, msgspec.json.encode(content), self._clock_for(t_ns).log_time_at(t_ns))
 
     def _clock_for(self, t_ns: int) -> LogClock:
         """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
@@ -159,11 +159,11 @@ def alarm_schema() -> Schema:
     """Return the schema of alarms: the columns of a finding, and the fields of `_ALARM_FIELDS`."""
     finding = result_messages.message_schema("finding")
     content = json.loads(finding.data)
-    own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM_FIELDS.items()}
+    own_fields = {name: {"type": kind, "description": meaning} for name, (kind, meaning) in _ALARM_FIELDS.items()}
     content |= {
         "title": "drivelint.Alarm",
         "description": "A rule fails for the first time in a watched drive. Left out: what is not known.",
-        "properties": {**own, **content["properties"]},
+        "properties": {**own_fields, **content["properties"]},
         "required": ["alarm", "rule_id", "t_start_ns"],
         "additionalProperties": True,
     }
@@ -172,8 +172,8 @@ def alarm_schema() -> Schema:
 
 def _message_contents(chunks: Iterable[RecordChunk]) -> Iterator[bytes]:
     """Yield the message of each chunk, which contains one record, without the record's header."""
-    none = np.zeros(0, np.uint64)
-    head = actor_boxes.message_headers(0, none, none.astype(np.int64), 0).shape[1]
+    no_number = np.zeros(0, np.uint64)
+    head = actor_boxes.message_headers(0, no_number, no_number.astype(np.int64), 0).shape[1]
     for records, index in chunks:
         assert len(index) == 1  # noqa: S101 - all boxes are of one step
         yield bytes(records[head:])

@@ -37,7 +37,7 @@ class SettledVerdicts:
         `known_from_ns`: the time from which the window has the same data as the whole log. A verdict is not settled if its episode may have
         begun earlier or may continue. Unknown verdicts are reported at the end, since the missing data may still come.
         """
-        found = []
+        settled_rows = []
         for key, row in _verdicts_with_unique_key(window.verdicts).items():
             if row["verdict"] not in {"pass", "fail"} or row["t_start_ns"] is None or key in self._said:
                 continue
@@ -47,8 +47,8 @@ class SettledVerdicts:
                 self._said[key] = {
                     name: row[name] for name in (*IDENTIFYING_VERDICT_COLUMNS, *OTHER_REPORTED_VERDICT_COLUMNS)
                 }
-                found.append(row)
-        return found
+                settled_rows.append(row)
+        return settled_rows
 
     def __len__(self) -> int:
         return len(self._said)
@@ -58,16 +58,16 @@ class SettledVerdicts:
 
         A reported verdict that the whole log does not have is in the second list, with `verdict` None.
         """
-        judged = [row for row in verdicts.to_pylist() if row["verdict"] != "not_applicable"]
-        there = {_verdict_key(row) for row in judged}
-        late = [row for row in judged if _verdict_key(row) not in self._said]
-        other = [
+        rows = [row for row in verdicts.to_pylist() if row["verdict"] != "not_applicable"]
+        there = {_verdict_key(row) for row in rows}
+        late = [row for row in rows if _verdict_key(row) not in self._said]
+        revised = [
             row
-            for row in judged
-            if (mine := self._said.get(_verdict_key(row))) is not None and not _is_same_verdict(mine, row)
+            for row in rows
+            if (earlier := self._said.get(_verdict_key(row))) is not None and not _is_same_verdict(earlier, row)
         ]
-        gone = [{**row, "verdict": None} for key, row in self._said.items() if key not in there]
-        return late, [*other, *gone]
+        absent = [{**row, "verdict": None} for key, row in self._said.items() if key not in there]
+        return late, [*revised, *absent]
 
 
 def _verdicts_with_unique_key(verdicts: pa.Table) -> dict[Key, Row]:

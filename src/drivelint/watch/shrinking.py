@@ -30,15 +30,15 @@ class ShrinkingMargins:
         self, window: JudgedWindow, rules: Mapping[str, Rule], drive_start_ns: int
     ) -> list[dict[str, Any]]:
         """Return a message for each margin that is below its rule's `near_margin` at the newest steps, and shrinks."""
-        found: list[dict[str, Any]] = []
-        seen: dict[Key, int] = {}
+        messages: list[dict[str, Any]] = []
+        newest_by_key: dict[Key, int] = {}
         for row in window.courses.to_pylist():
             if row["finding_id"] is not None:
                 continue
             key = row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
             t_ns, margin = np.array(row["t_ns"], np.int64), np.array(row["margin"], np.float64)
-            known = np.isfinite(margin)
-            t_ns, margin = t_ns[known], margin[known]
+            has_margin = np.isfinite(margin)
+            t_ns, margin = t_ns[has_margin], margin[has_margin]
             if not len(t_ns):
                 continue
             rule = rules[row["rule_id"]]
@@ -47,14 +47,14 @@ class ShrinkingMargins:
             is_near = rule.near_margin is not None and 0 <= margin[-1] < rule.near_margin
             if not (is_now and is_near):
                 continue
-            seen[key] = int(t_ns[-1])
+            newest_by_key[key] = int(t_ns[-1])
             if key in self._open or last.sum() < 2:
                 continue
             per_s = np.polyfit((t_ns[last] - t_ns[-1]) / 1e9, margin[last], 1)[0]
             if per_s >= 0 or -margin[-1] / per_s > MOST_TIME_UNTIL_MARGIN_IS_ZERO_S:
-                seen.pop(key)
+                newest_by_key.pop(key)
                 continue
-            found.append({
+            messages.append({
                 "type": "warning",
                 "rule_id": rule.id,
                 "title": rule.title,
@@ -70,5 +70,5 @@ class ShrinkingMargins:
                 "shrinks_per_s": float(-per_s),
                 "to_violation_s": float(-margin[-1] / per_s),
             })  # fmt: skip
-        self._open = seen
-        return found
+        self._open = newest_by_key
+        return messages

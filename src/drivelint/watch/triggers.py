@@ -44,13 +44,13 @@ class Trigger:
 
         Return a note: an error, or the number of alarms that were left out before; None: there is nothing to report.
         """
-        mine = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
-        if not mine:
+        own_alarms = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
+        if not own_alarms:
             return None
         now = time.monotonic()
-        self._running = [each for each in self._running if each.poll() is None]
+        self._running = [running for running in self._running if running.poll() is None]
         if now - self._last_s < LEAST_PAUSE_BETWEEN_STARTS_S or len(self._running) >= MOST_SIMULTANEOUS_RUNS:
-            self.n_left_out += len(mine)
+            self.n_left_out += len(own_alarms)
             return None
         self._last_s = now
         try:
@@ -59,7 +59,7 @@ class Trigger:
             return f"--on: {self.command[0]}: cannot be started: {error.strerror or error}"
         assert process.stdin is not None  # noqa: S101 - it is a pipe
         with suppress(BrokenPipeError, OSError):  # the command need not read stdin
-            process.stdin.writelines(json.dumps(alarm).encode() + b"\n" for alarm in mine)
+            process.stdin.writelines(json.dumps(alarm).encode() + b"\n" for alarm in own_alarms)
             process.stdin.close()
         self._running.append(process)
         self.n_run += 1
@@ -82,7 +82,7 @@ class Trigger:
 
 def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected_rules: Mapping[str, Rule]) -> list[Trigger]:
     """Return the triggers of texts `SEL=COMMAND`. Errors: `UsageError` for a wrong text, or if SEL names no selected rule."""
-    found = []
+    triggers = []
     for text in texts:
         names, sign, words = text.partition("=")
         if not sign or not names.strip():
@@ -99,5 +99,5 @@ def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected_rules:
         )
         if not rules:
             raise UsageError(f"--on {text!r}: none of the selected rules is meant: add it with --rules")
-        found.append(Trigger(rules, command))
-    return found
+        triggers.append(Trigger(rules, command))
+    return triggers

@@ -77,7 +77,7 @@ class ViewerServer:
     """
 
     def __init__(self, host: str, port: int, allowed_origins: Sequence[str] = ()) -> None:
-        self._allowed = frozenset(each.rstrip("/").casefold() for each in allowed_origins)
+        self._allowed = frozenset(origin.rstrip("/").casefold() for origin in allowed_origins)
         self._channels: list[dict[str, Any]] = []
         self._n_channels = 0
         self._viewers: set[_Viewer] = set()
@@ -122,9 +122,9 @@ class ViewerServer:
 
     def notes(self) -> list[str]:
         """Return the new notes on refused clients."""
-        found = list(self._notes)
-        del self._notes[: len(found)]  # the thread may have added more
-        return found
+        new_notes = list(self._notes)
+        del self._notes[: len(new_notes)]  # the thread may have added more
+        return new_notes
 
     def close(self) -> None:
         """Disconnect the viewers and end the server, even if a viewer does not respond. May be called twice."""
@@ -176,10 +176,12 @@ class ViewerServer:
         origins = request.headers.get_all("Origin")
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None
-        told = terminal_safe_line(" ".join(origins))[:200]
-        if told not in self._refused and len(self._refused) < MOST_WAITING_MESSAGES:
-            self._refused.add(told)
-            self._notes.append(f"--serve: a page of {told} was refused: give --allow-origin {told} if it is to watch")
+        origins_text = terminal_safe_line(" ".join(origins))[:200]
+        if origins_text not in self._refused and len(self._refused) < MOST_WAITING_MESSAGES:
+            self._refused.add(origins_text)
+            self._notes.append(
+                f"--serve: a page of {origins_text} was refused: give --allow-origin {origins_text} if it is to watch"
+            )
         return connection.respond(403, "pages of this origin may not connect\n")
 
     async def _connected(self, connection: ServerConnection) -> None:
@@ -190,8 +192,8 @@ class ViewerServer:
         self._viewers.add(viewer)
         sending = asyncio.ensure_future(viewer.send())
         try:
-            async for said in connection:
-                self._handle_request(viewer, said)
+            async for message in connection:
+                self._handle_request(viewer, message)
         except WebSocketException:
             pass  # the client disconnected without a closing handshake
         finally:
@@ -205,9 +207,9 @@ class ViewerServer:
         with suppress(ValueError, KeyError, TypeError):
             request = json.loads(message)
             if request["op"] == "subscribe":
-                for each in request["subscriptions"]:
-                    if len(viewer.subscriptions) < MOST_WAITING_MESSAGES and 0 <= each["id"] < 1 << 32:
-                        viewer.subscriptions[each["id"]] = each["channelId"]
+                for subscription in request["subscriptions"]:
+                    if len(viewer.subscriptions) < MOST_WAITING_MESSAGES and 0 <= subscription["id"] < 1 << 32:
+                        viewer.subscriptions[subscription["id"]] = subscription["channelId"]
             elif request["op"] == "unsubscribe":
                 for number in request["subscriptionIds"]:
                     viewer.subscriptions.pop(number, None)

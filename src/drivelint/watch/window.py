@@ -70,35 +70,35 @@ class Window:
         if not self._waiting:
             return False
         until_ns = most_ns + (self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns)
-        moved = False
-        while self._waiting and (not moved or (self._waiting[0].at_ns <= until_ns and not self._waiting[0].is_cut)):
-            placed = self._waiting.popleft()
-            if placed.is_cut:
+        has_moved = False
+        while self._waiting and (not has_moved or (self._waiting[0].at_ns <= until_ns and not self._waiting[0].is_cut)):
+            entry = self._waiting.popleft()
+            if entry.is_cut:
                 self._frames.clear()
                 self.is_whole = False
-            self._frames.append(placed)
-            self._newest_ns = placed.at_ns if self._newest_ns is None else max(placed.at_ns, self._newest_ns)
-            moved = True
+            self._frames.append(entry)
+            self._newest_ns = entry.at_ns if self._newest_ns is None else max(entry.at_ns, self._newest_ns)
+            has_moved = True
         while self._newest_ns is not None and self._frames[0].at_ns < self._newest_ns - self._length_ns:
             self._frames.popleft()
             self.is_whole = False
-        return moved
+        return has_moved
 
     @property
     def frames(self) -> list[Frame]:
         """The frames of the window in the order of their arrival."""
-        return [placed.frame for placed in self._frames]
+        return [entry.frame for entry in self._frames]
 
     def frames_since(self, t_ns: int) -> list[Frame]:
         """Return the frames after the last frame older than `t_ns`, or after the last jump of the log's clock if that is later.
 
         They include waiting frames, and are in the order of their arrival.
         """
-        found: list[Frame] = []
-        for placed in chain(reversed(self._waiting), reversed(self._frames)):
-            if placed.frame.t_ns < t_ns:
+        newest: list[Frame] = []
+        for entry in chain(reversed(self._waiting), reversed(self._frames)):
+            if entry.frame.t_ns < t_ns:
                 break
-            found.append(placed.frame)
-            if placed.is_cut:
+            newest.append(entry.frame)
+            if entry.is_cut:
                 break
-        return found[::-1]
+        return newest[::-1]

@@ -68,9 +68,9 @@ class DaskCluster:
             except TimeoutError:
                 ended = set()
             except CancelledError as error:  # our message replaces the original text, which lists all tasks
-                lost = self._client.status != "running"
+                is_lost = self._client.status != "running"
                 raise self._scheduler_error(
-                    "the connection was lost" if lost else "its tasks were cancelled"
+                    "the connection was lost" if is_lost else "its tasks were cancelled"
                 ) from error
             except Exception as error:
                 raise self._scheduler_error(str(error)) from error

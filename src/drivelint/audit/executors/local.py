@@ -61,10 +61,10 @@ class LocalPool:
         """See `Executor.wait`."""
         while busy := [worker for worker in self._workers if worker.task is not None]:
             heard = wait([worker.pipe for worker in busy], timeout=_WORKER_CHECK_PERIOD_S)
-            found = [
+            outcomes = [
                 worker.receive_message() if worker.pipe in heard else worker.kill_if_over_limit() for worker in busy
             ]
-            if ended := [outcome for outcome in found if outcome is not None]:
+            if ended := [outcome for outcome in outcomes if outcome is not None]:
                 self._assign_tasks()
                 return ended
         return []
@@ -77,7 +77,7 @@ class LocalPool:
 
     def _assign_tasks(self) -> None:
         """Give waiting tasks to idle workers, and start workers up to the capacity."""
-        for worker in [each for each in self._workers if each.is_to_be_replaced]:
+        for worker in [candidate for candidate in self._workers if candidate.is_to_be_replaced]:
             worker.kill()
             self._workers.remove(worker)
         while self._waiting:
@@ -121,22 +121,22 @@ class _Worker:
     def receive_message(self) -> TaskOutcome | None:
         """Receive a message of the worker. Return the outcome of the task; None: the task has only begun."""
         try:
-            told: str | list[Receipt] | Exception = self.pipe.recv()
+            message: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
             self._process.join()
             return self._kill_and_return_loss(f"the worker died (exit code {self._process.exitcode})")
-        if isinstance(told, str):
+        if isinstance(message, str):
             self._cpu_s_at_begin = self._last_cpu_s = self._processor_seconds()
             self._advanced_at_s = monotonic()
             return None
         task = self._remove_current_task()
-        return TaskOutcome(task, error=told) if isinstance(told, Exception) else TaskOutcome(task, told)
+        return TaskOutcome(task, error=message) if isinstance(message, Exception) else TaskOutcome(task, message)
 
     def kill_if_over_limit(self) -> TaskOutcome | None:
         """Kill the worker if it exceeds a limit, and return the loss as the task's outcome; None: it is within its limits."""
-        if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
+        if self._memory is not None and (resident := resident_bytes(self._process.pid)) > self._memory:
             return self._kill_and_return_loss(
-                f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
+                f"the worker took {resident / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
             )
         if self._timeout_s is None or self._cpu_s_at_begin is None or self.task is None:
             return None
@@ -177,19 +177,19 @@ def _run_tasks_from_pipe(pipe: Connection, driver_pid: int) -> None:
             task: Task = pipe.recv()
         except (EOFError, OSError):
             return
-        told: list[Receipt] | Exception
+        answer: list[Receipt] | Exception
         try:
             open_judge(task.settings)
             pipe.send(_BEGUN_MESSAGE)
-            told = run_task(task)
+            answer = run_task(task)
         except Exception as error:  # noqa: BLE001 - passed on: the driver distinguishes errors
-            told = error
+            answer = error
         try:
-            pipe.send(told)
+            pipe.send(answer)
         except OSError:
             return
         except Exception:  # noqa: BLE001 - some errors of libraries cannot be pickled
-            pipe.send(InternalError(f"{type(told).__name__}: {told}"))
+            pipe.send(InternalError(f"{type(answer).__name__}: {answer}"))
 
 
 @contextmanager
@@ -233,7 +233,7 @@ def core_count() -> int:
 def processor_seconds(process: int | None) -> float:
     """Return the processor time of a process in seconds; if the system does not report it, a monotonic clock."""
     try:
-        told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
-        return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads
+        fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads
     except (OSError, ValueError, IndexError):
         return monotonic()

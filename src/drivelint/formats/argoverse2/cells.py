@@ -34,11 +34,11 @@ def cast_column(path: Path, table: pa.Table, name: str, arrow_type: pa.DataType)
 
 def number_columns(path: Path, table: pa.Table, names: Iterable[str]) -> dict[str, Floats]:
     """Return columns of numbers, with NaN for NULL. Errors: `TraceError` if a value is not a number."""
-    found = {}
+    columns = {}
     for name in names:
         values = pc.fill_null(cast_column(path, table, name, pa.float64()), float("nan"))
-        found[name] = np.asarray(values.to_numpy(zero_copy_only=False), np.float64)
-    return found
+        columns[name] = np.asarray(values.to_numpy(zero_copy_only=False), np.float64)
+    return columns
 
 
 def integer_column(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
@@ -56,6 +56,6 @@ def rows_with_track_and_time(
     n = int(lost_rows.sum())
     if not n:
         return ~lost_rows, [], []
-    what = f"{path.name}: rows without {track_column} or time"
-    finding = QualityFinding("dropped_row", "error", f"{what}: {n}: they are not judged", n)
-    return ~lost_rows, [finding], times_of_lost_rows(t_ns, has_time, lost_rows, what)
+    description = f"{path.name}: rows without {track_column} or time"
+    finding = QualityFinding("dropped_row", "error", f"{description}: {n}: they are not judged", n)
+    return ~lost_rows, [finding], times_of_lost_rows(t_ns, has_time, lost_rows, description)

@@ -41,5 +41,5 @@ def frame_of_city(name: str) -> GeoFrame | None:
 
 def frame_by_file_name(name: str) -> GeoFrame | None:
     """Return the coordinate frame of the city in the file name of a sensor log's map; None if the name contains no city."""
-    found = _CITY_IN_FILE_NAME.search(name)
-    return None if found is None else frame_of_city(found[1])
+    match = _CITY_IN_FILE_NAME.search(name)
+    return None if match is None else frame_of_city(match[1])

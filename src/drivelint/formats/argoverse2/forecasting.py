@@ -106,9 +106,9 @@ def _scenario_file(path: Path) -> Path:
 
 def _scenario_table(path: Path) -> pa.Table:
     has = parquet.schema(path).names
-    if missing := [name for name in _REQUIRED_COLUMNS if name not in has]:
+    if lacking := [name for name in _REQUIRED_COLUMNS if name not in has]:
         raise TraceError(
-            f"{path}: no column {', '.join(missing)}: a scenario needs {', '.join(_REQUIRED_COLUMNS)}: get it again"
+            f"{path}: no column {', '.join(lacking)}: a scenario needs {', '.join(_REQUIRED_COLUMNS)}: get it again"
         )
     optional = [name for name in (*_CLOCK_COLUMNS, "city", "scenario_id") if name in has]
     rows = parquet.table(path, [*_REQUIRED_COLUMNS, *optional])
@@ -120,8 +120,8 @@ def _scenario_table(path: Path) -> pa.Table:
 def _distinct_texts(path: Path, rows: pa.Table, name: str) -> list[str | None]:
     if name not in rows.schema.names:
         return []
-    found: list[str | None] = pc.unique(cells.cast_column(path, rows, name, pa.string())).to_pylist()
-    return found
+    texts: list[str | None] = pc.unique(cells.cast_column(path, rows, name, pa.string())).to_pylist()
+    return texts
 
 
 def _times_of_rows(path: Path, rows: pa.Table, step: Times) -> Times:
@@ -153,9 +153,11 @@ def _add_map(recording: Recording, path: Path) -> None:
     files = sorted((path if path.is_dir() else path.parent).glob(_MAP_FILE_PATTERN))
     if not path.is_dir():
         name = path.name.removeprefix("scenario_").removesuffix(".parquet")
-        own = [file for file in files if name in file.name]
-        if own:
-            recording.notes.append(f"its map {own[0].name} is in the same folder: give the folder, or use --map")
+        maps_of_log = [file for file in files if name in file.name]
+        if maps_of_log:
+            recording.notes.append(
+                f"its map {maps_of_log[0].name} is in the same folder: give the folder, or use --map"
+            )
     elif len(files) > 1:
         names = name_list([file.name for file in files])
         message = f"the scenario has {len(files)} maps ({names}), and none is used: keep only one"

@@ -171,10 +171,13 @@ def _bounded_lane(segment_id: str, segments: Mapping[str, _LaneSegment]) -> Boun
         successors=tuple(to for to in segment.successors if to in segments),
         marks=(_mark("left", segment.left_mark), _mark("right", segment.right_mark)),
     )  # fmt: skip
-    if other := segments.get(segment.left_id or ""):
-        lane.left_id, lane.left_against = segment.left_id, _runs_against(segment.left, other.right, other.left)
-    if other := segments.get(segment.right_id or ""):
-        lane.right_id, lane.right_against = segment.right_id, _runs_against(segment.right, other.left, other.right)
+    if neighbour := segments.get(segment.left_id or ""):
+        lane.left_id, lane.left_against = segment.left_id, _runs_against(segment.left, neighbour.right, neighbour.left)
+    if neighbour := segments.get(segment.right_id or ""):
+        lane.right_id, lane.right_against = (
+            segment.right_id,
+            _runs_against(segment.right, neighbour.left, neighbour.right),
+        )
     return lane
 
 

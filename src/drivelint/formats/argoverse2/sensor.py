@@ -81,10 +81,10 @@ def read(probe: Probe) -> Recording:
         vehicle.assumed_size_finding(EGO_ID),
         *_findings_on_missing_poses(steps, rear_axle, np.bincount(step, minlength=len(steps))),
     ]
-    others, more = _annotated_states(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
-    ego = _ego_states(steps, vehicle.box_poses(rear_axle), others.ids)
+    object_states, more = _annotated_states(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
+    ego = _ego_states(steps, vehicle.box_poses(rear_axle), object_states.ids)
     recording = Recording(
-        NAME, States.concatenate([ego, others]), ego_ids=[EGO_ID], findings=findings, lost_times=lost_times
+        NAME, States.concatenate([ego, object_states]), ego_ids=[EGO_ID], findings=findings, lost_times=lost_times
     )
     recording.notes = notes + more
     recording.sensor_range_m = SENSOR_RANGE_M
@@ -97,8 +97,8 @@ def _annotation_file(folder: Path) -> tuple[Path, list[str]]:
     """Return the annotation file to read (`annotations.feather`, else the first by name), and a note on other annotation files."""
     files = sorted(folder.glob("annotations*.feather"))
     first = next((file for file in files if file.name == "annotations.feather"), files[0])
-    others = [file.name for file in files if file != first]
-    return first, [f"{first.name} is read; {name_list(others)} in the same folder is not read"] if others else []
+    unread = [file.name for file in files if file != first]
+    return first, [f"{first.name} is read; {name_list(unread)} in the same folder is not read"] if unread else []
 
 
 def _poses_at(path: Path, t_ns: Times) -> Poses:
@@ -110,21 +110,21 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
     ]
     order = np.argsort(stamps[timed], kind="stable")
     stamps, values = stamps[timed][order], values[order]
-    known, at = np.isin(t_ns, stamps), np.searchsorted(stamps, t_ns)
+    has_pose, at = np.isin(t_ns, stamps), np.searchsorted(stamps, t_ns)
     twice = (stamps[1:] == stamps[:-1]) & (values[1:] != values[:-1]).any(axis=1)
-    known &= ~np.isin(t_ns, stamps[1:][twice])
-    found = np.full((len(t_ns), values.shape[1]), np.nan)
-    found[known] = values[at[known]]
-    found[~np.isfinite(found).all(axis=1)] = np.nan
-    return Poses(found[:, :3], unit_quaternions(found[:, 3:]))
+    has_pose &= ~np.isin(t_ns, stamps[1:][twice])
+    poses = np.full((len(t_ns), values.shape[1]), np.nan)
+    poses[has_pose] = values[at[has_pose]]
+    poses[~np.isfinite(poses).all(axis=1)] = np.nan
+    return Poses(poses[:, :3], unit_quaternions(poses[:, 3:]))
 
 
 def _findings_on_missing_poses(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
     """Return the finding on time stamps without a pose: the annotated actors and the ego are present there, but not placed."""
-    missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
-    if not missing.any():
+    lacks_pose = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
+    if not lacks_pose.any():
         return []
-    n, boxes, first = int(missing.sum()), int(n_boxes[missing].sum()), int(steps[missing][0])
+    n, boxes, first = int(lacks_pose.sum()), int(n_boxes[lacks_pose].sum()), int(steps[lacks_pose][0])
     message = (
         f"{POSES_FILE} has no pose, or several, at {n} of {len(steps)} time stamps of the annotations, the first {first}: the ego and "
         f"{boxes} boxes are present there but not placed"
@@ -153,8 +153,8 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     )
     names = ids.dictionary.to_pylist()
     if riders:
-        who = name_list([names[i] for i in riders])
-        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
+        rider_names = name_list([names[i] for i in riders])
+        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {rider_names}")
     if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
     states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)
@@ -162,8 +162,8 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
 
 
 def _is_one_of(categories: pa.Array, wanted_categories: Iterable[str]) -> Mask:
-    found = pc.is_in(categories, value_set=pa.array(list(wanted_categories), pa.string()))
-    return np.asarray(found.to_numpy(zero_copy_only=False), np.bool_)
+    is_wanted = pc.is_in(categories, value_set=pa.array(list(wanted_categories), pa.string()))
+    return np.asarray(is_wanted.to_numpy(zero_copy_only=False), np.bool_)
 
 
 def _pose_columns(poses: Poses) -> dict[str, Floats]:

@@ -168,8 +168,8 @@ def _bounded_lane(
 
 
 def _marking(bound: etree._Element | None) -> str | None:
-    said = None if bound is None else bound.findtext("lineMarking")
-    return _MARKINGS.get(said or "")
+    text = None if bound is None else bound.findtext("lineMarking")
+    return _MARKINGS.get(text or "")
 
 
 def _remove_town_road_types_of_highway_scenario(
@@ -187,15 +187,15 @@ def _remove_town_road_types_of_highway_scenario(
 
 def _report_unread_markings_and_types(root: etree._Element, quality: MapQuality) -> None:
     """Report the markings and lanelet types that are not read."""
-    for tag, known, what in (
+    for tag, known_words, subject in (
         ("lineMarking", _MARKINGS, "markings"),
         ("laneletType", _READ_LANELET_TYPES, "types of lanelets"),
     ):
-        said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
-        unread = {word: n for word, n in sorted(said.items()) if word not in known and word != "unknown"}
+        counts = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
+        unread = {word: n for word, n in sorted(counts.items()) if word not in known_words and word != "unknown"}
         if unread:
             listed = ", ".join(f"{word or 'no word'} ({n})" for word, n in unread.items())
-            quality.add("unknown_word", "info", None, f"{what} that are not read: {listed}", sum(unread.values()))
+            quality.add("unknown_word", "info", None, f"{subject} that are not read: {listed}", sum(unread.values()))
 
 
 def _set_junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:

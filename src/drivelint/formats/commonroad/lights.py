@@ -76,10 +76,10 @@ def _unroll_cycle(light: etree._Element, first_step: float, last_step: float) ->
     ends = np.cumsum(durations)
     cycles = np.arange(np.floor((first_step - offset) / ends[-1]), np.floor((last_step - offset) / ends[-1]) + 1)
     begins = (offset + cycles[:, None] * ends[-1] + np.r_[0.0, ends[:-1]]).ravel()
-    shown = [_STATE_BY_COLOUR.get(word) for word in colours] * len(cycles)
+    states = [_STATE_BY_COLOUR.get(word) for word in colours] * len(cycles)
     at = int(np.searchsorted(begins, first_step, side="right")) - 1
-    keep = [i for i in range(at, len(begins)) if begins[i] <= last_step and (i == at or shown[i] != shown[i - 1])]
-    return np.maximum(begins[keep], first_step), [shown[i] for i in keep]
+    keep = [i for i in range(at, len(begins)) if begins[i] <= last_step and (i == at or states[i] != states[i - 1])]
+    return np.maximum(begins[keep], first_step), [states[i] for i in keep]
 
 
 def _cycle_colours(light: etree._Element) -> list[str]:

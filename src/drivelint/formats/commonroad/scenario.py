@@ -122,13 +122,16 @@ def read(probe: Probe) -> Recording:
     if len(states):
         recording.signals, findings = signal_states(root, step_s, columns["step"].min(), columns["step"].max())
         recording.findings += findings
-    lost = [
+    has_unplaced_box = [
         bool((np.isnan(o).any(axis=0) & ~np.isnan(part["yaw_rad"])).any())
         for o, part in zip(offsets, parts, strict=True)
     ]
     recording.outlines, unread = environment_outlines(root)
     unread += [str(obstacle.get("id")) for obstacle in root.findall("phantomObstacle")]
-    recording.findings += [*shape_findings(ids, shapes, lost), *_findings_on_unread_parts(obstacles, unread)]
+    recording.findings += [
+        *shape_findings(ids, shapes, has_unplaced_box),
+        *_findings_on_unread_parts(obstacles, unread),
+    ]
     return recording
 
 
@@ -177,8 +180,8 @@ def _state_columns(
     trajectory = obstacle.find("trajectory")
     more = None if trajectory is None else trajectories.get(trajectory)
     if more is not None:
-        nothing = np.full(len(next(iter(more.values()))), np.nan)
-        columns = {n: np.concatenate([values, more.get(_PATH_BY_COLUMN[n], nothing)]) for n, values in columns.items()}
+        unknown = np.full(len(next(iter(more.values()))), np.nan)
+        columns = {n: np.concatenate([values, more.get(_PATH_BY_COLUMN[n], unknown)]) for n, values in columns.items()}
     columns["step"] = np.trunc(columns["step"])
     if not np.isfinite(columns["step"]).all():
         raise TraceError(

@@ -128,11 +128,11 @@ def shape_findings(
 ) -> list[QualityFinding]:
     """Return findings on obstacles without a known box, and on obstacles with states where the place of the box is unknown (`unplaced`)."""
     findings = []
-    for what in sorted({shape.no_box for shape in shapes} - {""}):
-        names = [name for name, shape in zip(ids, shapes, strict=True) if shape.no_box == what]
-        message = f"{what} instead of a box: length and width of {name_list(names)} are not known"
+    for form in sorted({shape.no_box for shape in shapes} - {""}):
+        names = [name for name, shape in zip(ids, shapes, strict=True) if shape.no_box == form]
+        message = f"{form} instead of a box: length and width of {name_list(names)} are not known"
         findings.append(QualityFinding.of_actors("no_box", "warning", message, names))
-    if names := [name for name, lost in zip(ids, unplaced, strict=True) if lost]:
+    if names := [name for name, is_unplaced in zip(ids, unplaced, strict=True) if is_unplaced]:
         message = (
             f"the position of the boxes of {name_list(names)} relative to their states is not known: give only "
             "originXShift, a number within the box (the format does not define whether a center turns with the "

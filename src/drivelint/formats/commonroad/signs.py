@@ -77,12 +77,12 @@ class MapSigns:
         perhaps: list[float] = []
         for ref in referenced_ids(lanelet, "trafficSignRef"):
             on_post = self.elements.get(ref, [])
-            found = [
+            limits = [
                 e.value
                 for e in on_post
                 if e.kind in _LIMIT_KINDS and e.value is not None and not _why_implausible(e.value)
             ]
-            (perhaps if any(_is_restrictive_plate(e) for e in on_post) else sure).extend(found)
+            (perhaps if any(_is_restrictive_plate(e) for e in on_post) else sure).extend(limits)
         least = min(sure, default=None)
         if perhaps and (least is None or min(perhaps) < least):
             least = None
@@ -93,12 +93,12 @@ class MapSigns:
         self._report_unknown_codes()
         self._report_unusable_limits()
         known_ids = {*self.elements, *light_ids}
-        lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known_ids)
-        if lost:
-            message = f"lanelets refer to signs or lights that the map does not contain: {_counts_text(lost)}"
-            self.quality.add("missing_signal", "warning", None, message, lost.total())
-        held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
-        if idle := sorted(known_ids - held):
+        lacking = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known_ids)
+        if lacking:
+            message = f"lanelets refer to signs or lights that the map does not contain: {_counts_text(lacking)}"
+            self.quality.add("missing_signal", "warning", None, message, lacking.total())
+        refs = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
+        if idle := sorted(known_ids - refs):
             message = f"signs and lights to which no lanelet refers apply to no lane: {', '.join(idle)}"
             self.quality.add("signal_without_lane", "info", None, message, len(idle))
 
@@ -152,7 +152,9 @@ def referenced_ids(element: etree._Element, name: str) -> list[str]:
 def signal_refs(lanelet: etree._Element) -> list[str]:
     """Return the ids of the signs and lights to which a lanelet or its stop line refers."""
     return list(
-        dict.fromkeys(ref for each in (lanelet, *lanelet.findall("stopLine")) for ref in _signal_refs_of_element(each))
+        dict.fromkeys(
+            ref for element in (lanelet, *lanelet.findall("stopLine")) for ref in _signal_refs_of_element(element)
+        )
     )
 
 
@@ -190,7 +192,7 @@ def signal_rows(
         place = points(element.find("position"))
         stands = place[0] + offset if len(place) else None
         turns = turns_of_light_direction((element.findtext("direction") or "").strip()) if light else None
-        plates = [each.code for each in elements if _is_restrictive_plate(each)]
+        plates = [element_on_post.code for element_on_post in elements if _is_restrictive_plate(element_on_post)]
         for lane, line_s_m in holds.get(name, ()):
             if plates and any(part.kind in KINDS_WITH_UNREAD_CONDITIONS for part in elements):
                 add_unread_condition(signs.quality, lane.lanelet_id, f"sign {name}", ", ".join(plates))
@@ -234,14 +236,14 @@ def stop_line_stations(
 
 def points(parent: etree._Element | None) -> Floats:
     """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point without possible x and y."""
-    found = [] if parent is None else list(parent.iterfind(".//point"))
-    both = np.array([[safe_xml.number_or_nan(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(
+    elements = [] if parent is None else list(parent.iterfind(".//point"))
+    xy = np.array([[safe_xml.number_or_nan(p.findtext(axis)) for axis in "xy"] for p in elements], np.float64).reshape(
         -1, 2
     )
-    bad = np.flatnonzero(~(np.abs(both) < LARGEST_COORDINATE_M).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(xy) < LARGEST_COORDINATE_M).all(axis=1))
     if len(bad):
-        raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
-    return both
+        raise ValueError(f"the point in line {elements[bad[0]].sourceline} has impossible values of x and y")
+    return xy
 
 
 def _finite_number(text: str | None) -> float | None:

@@ -63,9 +63,9 @@ def read_modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> 
     path = file_path(folder, name)
     if not path.is_file():
         return None
-    wanted = {"timestamp_us": pa.int64(), **types}
-    rows = ipc.table(path, [f"{name}.{column}" for column in wanted])
-    columns = {column: _cast_column(path, rows, f"{name}.{column}", kind) for column, kind in wanted.items()}
+    type_by_column = {"timestamp_us": pa.int64(), **types}
+    rows = ipc.table(path, [f"{name}.{column}" for column in type_by_column])
+    columns = {column: _cast_column(path, rows, f"{name}.{column}", kind) for column, kind in type_by_column.items()}
     if columns["timestamp_us"].null_count:
         raise TraceError(f"{path}: {name}.timestamp_us has rows without a time: convert the log again")
     return ModalityFile(path, columns, schema_metadata(path, rows.schema))
@@ -124,10 +124,10 @@ def vectors(array: pa.FixedSizeListArray) -> Floats:
     """Return lists of k numbers as an array (n, k), with NaN for NULL lists and NULL numbers."""
     width = array.type.list_size
     numbers = array.values.slice(array.offset * width, len(array) * width)
-    found = np.asarray(numbers.to_numpy(zero_copy_only=False), np.float64).reshape(-1, width)
+    rows = np.asarray(numbers.to_numpy(zero_copy_only=False), np.float64).reshape(-1, width)
     if array.null_count:
-        found = np.where(is_null(array)[:, None], np.nan, found)
-    return found
+        rows = np.where(is_null(array)[:, None], np.nan, rows)
+    return rows
 
 
 def integers(array: pa.Array) -> NDArray[np.int64]:

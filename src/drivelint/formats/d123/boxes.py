@@ -70,8 +70,8 @@ def box_states(
         flat, frame, labels = {name: values.take(keep) for name, values in flat.items()}, frame[keep], labels[keep]
     tracks = flat["track_token"].dictionary_encode()
     box, velocity = vectors(flat["bounding_box_se3"]), vectors(flat["velocity_3d"])
-    given = ~is_null(flat["velocity_3d"])
-    odd = ~np.isfinite(box).all(axis=1) | (given & ~np.isfinite(velocity).all(axis=1))
+    has_velocity = ~is_null(flat["velocity_3d"])
+    odd = ~np.isfinite(box).all(axis=1) | (has_velocity & ~np.isfinite(velocity).all(axis=1))
     if odd.any():
         box, velocity = (np.where(np.isfinite(values), values, np.nan) for values in (box, velocity))
     turn = unit_quaternions(box[:, [4, 5, 6, 3]])
@@ -95,8 +95,8 @@ def box_states(
         np.asarray(odd, np.bool_),
     )
     if on_something:
-        who = name_list([states.ids[i] for i in on_something])
-        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
+        rider_names = name_list([states.ids[i] for i in on_something])
+        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {rider_names}")
     if not about.box_velocities_global:
         _set_velocities_to_nan(states, np.ones(len(states), np.bool_))
         notes.append("velocities of boxes are not read: in this data set, 123D states them along the axes of the boxes")
@@ -137,12 +137,15 @@ def _class_codes_and_is_ego(boxes: ModalityFile, label_numbers: Any) -> tuple[Co
     unknown = class_codes == -2
     findings = []
     if unknown.any():
-        which = name_list([str(n) if n >= 0 else "NULL" for n in np.unique(label_numbers[unknown]).tolist()])
-        message = f"labels that {enumeration} does not define ({which}) at {int(unknown.sum())} boxes: the classes of these are not known"
+        numbers_text = name_list([str(n) if n >= 0 else "NULL" for n in np.unique(label_numbers[unknown]).tolist()])
+        message = (
+            f"labels that {enumeration} does not define ({numbers_text}) at {int(unknown.sum())} boxes: "
+            "the classes of these are not known"
+        )
         findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
     ego_number = facts.LABELS_BY_ENUMERATION[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
-    own = (label_numbers == ego_number) & inside
-    return np.maximum(class_codes, -1).astype(np.int8), findings, np.asarray(own, np.bool_)
+    is_ego = (label_numbers == ego_number) & inside
+    return np.maximum(class_codes, -1).astype(np.int8), findings, np.asarray(is_ego, np.bool_)
 
 
 def _drop_unmeasured_velocities(states: States, frame: Indices) -> list[QualityFinding]:

@@ -44,16 +44,16 @@ class EgoBox(NamedTuple):
 
 def read_ego(folder: Path) -> ModalityFile:
     """Return the file of ego states. Errors: as `read_modality`, and `TraceError` if it is missing or has no row."""
-    found = read_modality(folder, EGO_STATE, _COLUMNS)
-    if found is None or not found.n_rows:
+    ego = read_modality(folder, EGO_STATE, _COLUMNS)
+    if ego is None or not ego.n_rows:
         raise TraceError(f"{folder / EGO_STATE}.arrow: the file has no state of the ego: convert the log again")
-    return found
+    return ego
 
 
 def ego_id_unlike_box_ids(box_ids: Iterable[str]) -> str:
     """Return an id for the ego that no box has."""
-    name, others = EGO_ID, set(box_ids)
-    while name in others:
+    name, ids = EGO_ID, set(box_ids)
+    while name in ids:
         name += "_vehicle"
     return name
 

@@ -84,9 +84,9 @@ def dataset_facts(name: str) -> DatasetFacts:
 
 def rider_and_ridden_label_numbers(enumeration: str) -> tuple[list[int], list[int]]:
     """Return the label numbers of riders and of ridden vehicles; none if the data set has no separate boxes for them."""
-    both = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
+    names_by_role = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
     riders, ridden = (
-        [LABELS_BY_ENUMERATION[enumeration][name][0] for name in both[role]] for role in ("riders", "ridden")
+        [LABELS_BY_ENUMERATION[enumeration][name][0] for name in names_by_role[role]] for role in ("riders", "ridden")
     )
     return riders, ridden
 

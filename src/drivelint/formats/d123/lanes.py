@@ -114,22 +114,22 @@ def _intersection_by_lane(
     for number, intersection in intersections.items():
         for name in intersection.lane_group_ids or ():
             of_group.setdefault(name, number)
-    found = {}
+    intersection_by_lane = {}
     for name, lane in lanes.items():
         group = lane.lane_group_id
         if group is not None and group in of_group:
-            found[name] = of_group[group]
-    return found
+            intersection_by_lane[name] = of_group[group]
+    return intersection_by_lane
 
 
 def _successors_by_lane(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
     """Return lane -> its successors: the lanes that it names as such, and the lanes that name it as predecessor."""
-    found: dict[int, set[str]] = defaultdict(set)
+    successors: dict[int, set[str]] = defaultdict(set)
     for name, lane in lanes.items():
-        found[name].update(map(str, lane.successor_ids or ()))
+        successors[name].update(map(str, lane.successor_ids or ()))
         for before in lane.predecessor_ids or ():
-            found[before].add(str(name))
-    return found
+            successors[before].add(str(name))
+    return successors
 
 
 def _bounded_lane(
@@ -149,8 +149,10 @@ def _bounded_lane(
         quality.add("unknown_word", "warning", str(lane_number), message)
     limits, limit_source = _limit_spans_and_source(lane_number, lane.speed_limit_mps, quality)
     beside = [
-        (None, None) if other is None or other not in lanes else (str(other), _runs_against(lane, lanes[other]))
-        for other in (lane.left_lane_id, lane.right_lane_id)
+        (None, None)
+        if neighbour_id is None or neighbour_id not in lanes
+        else (str(neighbour_id), _runs_against(lane, lanes[neighbour_id]))
+        for neighbour_id in (lane.left_lane_id, lane.right_lane_id)
     ]
     (left_id, left_against), (right_id, right_against) = beside
     return BoundedLane(
@@ -177,8 +179,11 @@ def _limit_spans_and_source(
 
 def _runs_against(lane: Lane, neighbour: Lane) -> bool:
     """Return whether a neighbour is driven the other way, by the directions of both lanes where they are nearest to each other."""
-    (own, along), (its, its_along) = _piece_middles_and_directions(lane), _piece_middles_and_directions(neighbour)
-    near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
+    (middles, along), (neighbour_middles, its_along) = (
+        _piece_middles_and_directions(lane),
+        _piece_middles_and_directions(neighbour),
+    )
+    near = np.hypot(*(middles[:, None] - neighbour_middles[None]).transpose(2, 0, 1))
     i, j = np.unravel_index(int(np.argmin(near)), near.shape)
     return bool(along[i] @ its_along[j] < 0.0)
 

@@ -44,11 +44,11 @@ def light_states(lights: ModalityFile, about: facts.DatasetFacts, t_ns: Times) -
     bad = (counts[0] != counts[1]) | (counts[0] < 0)
     findings, lost_times = [], []
     if bad.any():
-        what = "frames of traffic lights whose lanes and states differ in number"
+        description = "frames of traffic lights whose lanes and states differ in number"
         findings.append(
-            QualityFinding("malformed_row", "warning", f"{what}: {int(bad.sum())}: left out", int(bad.sum()))
+            QualityFinding("malformed_row", "warning", f"{description}: {int(bad.sum())}: left out", int(bad.sum()))
         )
-        lost_times = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, what)
+        lost_times = times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), bad, description)
     good = pa.array(~bad)
     lane, status = (integers(lights.columns[name].filter(good).flatten()) for name in _COLUMNS)
     lanes, lane_index = np.unique(lane, return_inverse=True)
@@ -74,19 +74,21 @@ def _state_codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
     if inside.all():
         return np.asarray(codes[status], np.int8), []
     n = int((~inside).sum())
-    which = name_list([str(number) for number in np.unique(status[~inside]).tolist()])
-    message = f"states of traffic lights that 123D does not define ({which}): {n}: treated as unknown"
-    found = np.where(inside, codes[np.where(inside, status, 0)], -1).astype(np.int8)
-    return found, [QualityFinding("unknown_light_state", "warning", message, n)]
+    numbers_text = name_list([str(number) for number in np.unique(status[~inside]).tolist()])
+    message = f"states of traffic lights that 123D does not define ({numbers_text}): {n}: treated as unknown"
+    known_codes = np.where(inside, codes[np.where(inside, status, 0)], -1).astype(np.int8)
+    return known_codes, [QualityFinding("unknown_light_state", "warning", message, n)]
 
 
 def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Codes, list[QualityFinding]]:
     """Set the states of lights that are red or amber in the whole log to unknown: a flashing light is written like a steady one."""
     is_lit = codes >= 0
-    shown = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
-    shown[light[is_lit], codes[is_lit]] = True
+    has_state = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
+    has_state[light[is_lit], codes[is_lit]] = True
     doubtful = (
-        (shown.sum(axis=1) == 1) & ~shown[:, SIGNAL_STATES.index("green")] & ~shown[:, SIGNAL_STATES.index("off")]
+        (has_state.sum(axis=1) == 1)
+        & ~has_state[:, SIGNAL_STATES.index("green")]
+        & ~has_state[:, SIGNAL_STATES.index("off")]
     )
     if not doubtful.any():
         return codes, []

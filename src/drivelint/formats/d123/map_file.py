@@ -39,7 +39,7 @@ def find_map(
         None,
     )
     if path is None:
-        looked = " nor at ".join(str(each) for each in (folder / LOG_MAP_FILE, shared) if each is not None)
+        looked = " nor at ".join(str(place) for place in (folder / LOG_MAP_FILE, shared) if place is not None)
         return None, [], [f"the log has no map: no file at {looked}: give a map with --map"]
     try:
         source = read_source(path)

@@ -67,8 +67,8 @@ class MapLayers:
 
         Errors: `TraceError` if it is not a map of 123D, or of a version that is not read.
         """
-        if missing := [column for column in MAP_FILE_COLUMNS if column not in rows.schema.names]:
-            raise TraceError(f"{name}: no column {', '.join(missing)}: this is not a map of 123D")
+        if lacking := [column for column in MAP_FILE_COLUMNS if column not in rows.schema.names]:
+            raise TraceError(f"{name}: no column {', '.join(lacking)}: this is not a map of 123D")
         self.header = schema_metadata(name, rows.schema)
         self.info = log_info(name, self.header)
         try:
@@ -140,8 +140,8 @@ class MapLayers:
     @staticmethod
     def _report_left_out(layer: str, object_id: int, why: str, quality: MapQuality) -> None:
         check = "invalid_lane" if layer == "LANE" else "invalid_object"
-        what = "lanelet" if layer == "LANE" else layer.lower().replace("_", " ")
-        quality.add(check, "error", str(object_id), f"{what} {object_id} is left out: {why}")
+        noun = "lanelet" if layer == "LANE" else layer.lower().replace("_", " ")
+        quality.add(check, "error", str(object_id), f"{noun} {object_id} is left out: {why}")
 
 
 def decode_points(value: Any) -> Floats:

@@ -105,14 +105,14 @@ def read(probe: Probe) -> Recording:
     box, findings = ego_file.ego_box(ego, about, name, forward_m)
     recording.findings += findings
     t_ns = time.nanoseconds(frames.ego_us)
-    own = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
-    recording.states, recording.ego_ids = _ego_with_boxes(own, box_states), [name]
+    ego_states = ego_file.ego_states(ego, frames.ego_rows, t_ns, box, about=about, name=name)
+    recording.states, recording.ego_ids = _ego_with_boxes(ego_states, box_states), [name]
     light_lanes: tuple[int, ...] = ()
     if lights is not None:
-        shown = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
-        recording.signals, light_lanes = shown.rows, shown.lanes
-        recording.findings += shown.findings
-        recording.lost_times += shown.lost_times
+        state_rows = light_states(lights, about, time.nanoseconds(integers(lights.columns["timestamp_us"])))
+        recording.signals, light_lanes = state_rows.rows, state_rows.lanes
+        recording.findings += state_rows.findings
+        recording.lost_times += state_rows.lost_times
     recording.embedded_map, findings, notes = find_map(folder, info, light_lanes)
     recording.findings += findings
     recording.notes += notes
@@ -163,12 +163,12 @@ def _usable_frame_rows(
         bad_rows = np.append(box_file.malformed_rows(boxes), False)
         malformed |= bad_rows[np.where(malformed, -1, box_rows)]
     malformed &= whole
-    chosen = np.flatnonzero(whole & ~malformed)
-    if not len(chosen):
+    usable = np.flatnonzero(whole & ~malformed)
+    if not len(usable):
         raise TraceError(
             f"{file_path(folder, SYNC)}: no frame has the ego and boxes that can be read: nothing can be judged: convert the log again"
         )
-    ego_rows, box_rows = ego_rows[chosen], box_rows[chosen]
+    ego_rows, box_rows = ego_rows[usable], box_rows[usable]
     moments = integers(ego.columns["timestamp_us"])
     ego_us = moments[ego_rows]
     if boxes is not None:

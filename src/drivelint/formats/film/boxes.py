@@ -85,12 +85,14 @@ def _distances_ahead(
     for actor in film.actor:
         distance = np.full(len(whole), np.inf)
         for at_ns, names, width in boxes:
-            mine = np.array([name == actor.box for name in names], np.bool_) & (width > 0)
-            np.minimum.at(distance, _frame_numbers(at_ns[mine], start, film), focal_px * actor.width / width[mine])
+            of_actor = np.array([name == actor.box for name in names], np.bool_) & (width > 0)
+            np.minimum.at(
+                distance, _frame_numbers(at_ns[of_actor], start, film), focal_px * actor.width / width[of_actor]
+            )
         ahead.append(np.where(np.isfinite(distance), distance, np.nan))
-    if not any(np.isfinite(each).any() for each in ahead):
-        wanted = ", ".join(str(actor.box) for actor in film.actor)
-        raise TraceError(f"{path}: no box has an id that the mapping names ({wanted}): correct the ids in the mapping")
+    if not any(np.isfinite(distances).any() for distances in ahead):
+        ids = ", ".join(str(actor.box) for actor in film.actor)
+        raise TraceError(f"{path}: no box has an id that the mapping names ({ids}): correct the ids in the mapping")
     return DistancesAhead(whole, ahead)
 
 

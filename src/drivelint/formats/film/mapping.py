@@ -148,11 +148,11 @@ def load(name: str) -> tuple[str, VideoMapping]:
 
 def _merge_tables(base: dict[str, Any], override: dict[str, Any]) -> dict[str, Any]:
     """Return `base` with the changes of `override`; tables are merged, lists replaced."""
-    both = {
+    common = {
         key: _merge_tables(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
         for key, value in override.items()
     }
-    return {**base, **both}
+    return {**base, **common}
 
 
 def _validate(path: Path, film: VideoMapping) -> None:

@@ -80,12 +80,12 @@ def read(probe: Probe) -> Recording:
         detections = boxes.read(path, film)
     else:
         detections = _distances_in_table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
-    judged = detections.frames % film.frames.every == 0
-    frames = detections.frames[judged]
+    is_used = detections.frames % film.frames.every == 0
+    frames = detections.frames[is_used]
     if not len(frames):
         raise TraceError(f"{path}: no frame is in the range of the mapping {stem!r}: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
-    states, egos_x = _states_and_ego_x_range(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
+    states, egos_x = _states_and_ego_x_range(film, frames, t_ns, [ahead[is_used] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's path across them"
     message = (
         f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
@@ -108,9 +108,9 @@ def _distances_in_table(
 ) -> DistancesAhead:
     sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, TextLayout(null_values=film.frames.not_detected))
     columns = _needed_columns(film)
-    if missing := [column for column in columns if column not in sheet.names]:
+    if lacking := [column for column in columns if column not in sheet.names]:
         raise TraceError(
-            f"{path}: no column {missing[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
+            f"{path}: no column {lacking[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
         )
     if unsaid := [actor.id for actor in film.actor if actor.ahead is None]:
         raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
@@ -134,10 +134,14 @@ def _distances_in_table(
         distance = np.full(len(whole), np.nan)
         distance[at] = np.where(odd, np.inf, values)[rows[first]]
         ahead.append(distance)
-    lost = sheet.bad_lines
-    if lost or bad.any():
-        n = len(lost) + int(bad.sum())
-        where = describe_places("line", lost, len(lost)) if lost else sheet.describe_rows(np.flatnonzero(bad))
+    bad_lines = sheet.bad_lines
+    if bad_lines or bad.any():
+        n = len(bad_lines) + int(bad.sum())
+        where = (
+            describe_places("line", bad_lines, len(bad_lines))
+            if bad_lines
+            else sheet.describe_rows(np.flatnonzero(bad))
+        )
         message = (
             f"{path.name}, {where}: the number of cells differs from the {len(sheet.names)} cells of the header: "
             "no actor has a position in these frames"
@@ -150,17 +154,17 @@ def _states_and_ego_x_range(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
     """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""
-    own = 1.0 if film.road.driven_on == "left" else -1.0  # 1: the ego's lane is left of the centre line
-    middle = own * film.road.lane_width / 2
+    side_sign = 1.0 if film.road.driven_on == "left" else -1.0  # 1: the ego's lane is left of the centre line
+    middle = side_sign * film.road.lane_width / 2
     ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9
     ego_y = np.full(len(frames), middle)
     if film.stages is not None:
-        ego_y = -own * _ego_beyond_centre_line_m(film, film.stages, frames)
+        ego_y = -side_sign * _ego_beyond_centre_line_m(film, film.stages, frames)
     front = ego_x + film.ego.length / 2
     tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
     for actor, distance in zip(film.actor, ahead, strict=True):
-        seen = np.flatnonzero(~np.isnan(distance))  # infinite: an actor is there, but its place is not known
-        there = slice(seen[0], seen[-1] + 1) if len(seen) else slice(0, 0)
+        with_distance = np.flatnonzero(~np.isnan(distance))  # infinite: an actor is there, but its place is not known
+        there = slice(with_distance[0], with_distance[-1] + 1) if len(with_distance) else slice(0, 0)
         along = actor.lane == "own"
         x = (front + np.where(np.isfinite(distance), distance, np.nan) + actor.length / 2)[there]
         y = np.where(np.isfinite(x), middle if along else -middle, np.nan)
@@ -179,12 +183,12 @@ def _states_and_ego_x_range(
     numbers |= {
         name: np.where(np.isfinite(x), np.array(values)[actor_index], np.nan) for name, values in motions.items()
     }
-    numbers["length_m"] = np.array([each.length for each in actors])[actor_index]
-    numbers["width_m"] = np.array([each.width for each in actors])[actor_index]
+    numbers["length_m"] = np.array([actor.length for actor in actors])[actor_index]
+    numbers["width_m"] = np.array([actor.width for actor in actors])[actor_index]
     kinds = ["car", *(actor.kind for actor in film.actor)]
     codes = {"actor_class": np.array([ACTOR_CLASSES.index(kind) for kind in kinds], np.int8)[actor_index]}
     states = States(
-        [each.id for each in actors], actor_index, times, numbers, codes, np.zeros(len(actor_index), np.bool_)
+        [actor.id for actor in actors], actor_index, times, numbers, codes, np.zeros(len(actor_index), np.bool_)
     )
     return states, (float(ego_x[0]), float(ego_x[-1]))
 

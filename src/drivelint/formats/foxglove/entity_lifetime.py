@@ -36,10 +36,10 @@ def with_states_between_updates(
     """
     unique, actor = distinct_values(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
-    whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in deletions[1]], np.int32)
+    deleted_actor = np.array([-1 if name is None else number.get(name, len(unique)) for name in deletions[1]], np.int32)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]
     grid_ns = np.unique(np.concatenate([rows.t_ns[new], deletions[0]]))
-    row, t_ns, stood_still = _states_between_updates(rows, actor, (deletions[0], whom), grid_ns)
+    row, t_ns, stood_still = _states_between_updates(rows, actor, (deletions[0], deleted_actor), grid_ns)
     if not len(row):
         return rows
     extra = rows.take(row)
@@ -51,10 +51,10 @@ def with_states_between_updates(
         (stood_still, "entity_held", "info", "stood still and keep their positions"),
         (~stood_still, "entity_stale", "warning", "moved before: they are present, but their positions are unknown"),
     )
-    for some, check, severity, what in kinds:
+    for some, check, severity, effect in kinds:
         if some.any():
             n, names = int(some.sum()), sorted({unique[i] for i in np.unique(actor[row[some]])})
-            message = f"{topic}: {n} states of entities that are neither updated nor deleted ({name_list(names)}): they {what}"
+            message = f"{topic}: {n} states of entities that are neither updated nor deleted ({name_list(names)}): they {effect}"
             findings.append(QualityFinding(check, severity, message, n, int(t_ns[some].min())))
     return join_batches([rows, extra])
 
@@ -95,11 +95,11 @@ def _states_between_updates(
 
 def _deletion_times(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:
     """Return the time at which each update is deleted: the first later deletion of its actor or of all actors."""
-    when, whom = deletions
+    when, deleted_actor = deletions
     result = np.full(len(t_ns), _NEVER_NS)
-    for one in np.unique(whom):
-        mine = np.flatnonzero((actor == one) | (one < 0))
-        times = np.sort(when[whom == one])
-        first_later = np.r_[times, _NEVER_NS][np.searchsorted(times, t_ns[mine], side="right")]
-        result[mine] = np.minimum(result[mine], first_later)
+    for number in np.unique(deleted_actor):
+        rows = np.flatnonzero((actor == number) | (number < 0))
+        times = np.sort(when[deleted_actor == number])
+        first_later = np.r_[times, _NEVER_NS][np.searchsorted(times, t_ns[rows], side="right")]
+        result[rows] = np.minimum(result[rows], first_later)
     return result

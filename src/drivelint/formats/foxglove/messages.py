@@ -50,11 +50,11 @@ def _add_message_files(
     )
     message = file.message_type.add(name=name)
     for field, number, kind in fields:
-        added = add_field(message, (field, number, kind), "foxglove", declared.enums)
-        first, *others = field.split("_")
-        added.json_name = first + "".join(map(str.title, others))
+        new_field = add_field(message, (field, number, kind), "foxglove", declared.enums)
+        first, *later_words = field.split("_")
+        new_field.json_name = first + "".join(map(str.title, later_words))
         if kind in _WELL_KNOWN_TYPES:
-            added.type_name = f".google.protobuf.{kind}"
+            new_field.type_name = f".google.protobuf.{kind}"
     for enum, values in declared.enums.items():
         if enum.startswith(f"{name}."):
             added_enum = message.enum_type.add(name=enum.removeprefix(f"{name}."))

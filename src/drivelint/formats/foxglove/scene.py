@@ -156,13 +156,13 @@ def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) 
             ),
         )
     )
-    gone, message = list_items_and_row_indices(decoded, "deletions")
-    if len(gone):
-        t_ns, timed = times(struct_field(gone, "timestamp"))
-        names, which = distinct_texts(gone, "id")
-        every = np.nan_to_num(numbers(gone, "type")) == DELETE_ALL
-        whom = [None if all_ else names[i] for i, all_ in zip(which, every, strict=True)]
-        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
+    deletions, message = list_items_and_row_indices(decoded, "deletions")
+    if len(deletions):
+        t_ns, timed = times(struct_field(deletions, "timestamp"))
+        names, name_index = distinct_texts(deletions, "id")
+        every = np.nan_to_num(numbers(deletions, "type")) == DELETE_ALL
+        deleted_ids = [None if is_of_all else names[i] for i, is_of_all in zip(name_index, every, strict=True)]
+        scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], deleted_ids))
 
 
 def _bodies(entities: pa.Array, classes: Codes) -> tuple[Vectors, Vectors, Vectors, Mask]:
@@ -176,8 +176,8 @@ def _bodies(entities: pa.Array, classes: Codes) -> tuple[Vectors, Vectors, Vecto
     for name in ("cubes", *_BODIES_OF_CLASSED_ENTITIES):
         items, parent = list_items_and_row_indices(entities, name)
         rows, first = np.unique(parent, return_index=True)
-        chosen = ~has_body[rows] if name == "cubes" else ~has_body[rows] & (classes[rows] >= 0)
-        rows, items = rows[chosen], items.take(pa.array(first[chosen]))
+        is_body = ~has_body[rows] if name == "cubes" else ~has_body[rows] & (classes[rows] >= 0)
+        rows, items = rows[is_body], items.take(pa.array(first[is_body]))
         pose = struct_field(items, "pose")
         place[rows], turn[rows] = vectors(pose, "position"), vectors(pose, "orientation", "xyzw")
         size[rows] = vectors(items, "size")
@@ -186,8 +186,8 @@ def _bodies(entities: pa.Array, classes: Codes) -> tuple[Vectors, Vectors, Vecto
 
 
 def _text_as_bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
-    texts, which = distinct_texts(entities, name)
-    return np.array([text.encode() for text in texts] or [b""])[which]
+    texts, text_index = distinct_texts(entities, name)
+    return np.array([text.encode() for text in texts] or [b""])[text_index]
 
 
 def _class_codes(entities: pa.Array) -> Codes:
@@ -199,9 +199,9 @@ def _class_codes(entities: pa.Array) -> Codes:
     keys, key = distinct_texts(pairs, "key")
     telling = np.array([name.lower() in CLASS_KEYS for name in keys], np.bool_)[key]
     values, value = distinct_texts(pairs, "value")
-    known = np.array([class_code(text) for text in values], np.int8)[value]
-    rows = np.flatnonzero(telling & (known >= 0))[::-1]
-    codes[parent[rows]] = known[rows]
+    class_codes = np.array([class_code(text) for text in values], np.int8)[value]
+    rows = np.flatnonzero(telling & (class_codes >= 0))[::-1]
+    codes[parent[rows]] = class_codes[rows]
     return codes
 
 
@@ -233,10 +233,12 @@ def _recording(
     frames = _transform_tree(transforms, own_times=own_times)
     rows = with_states_between_updates(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct_values(rows.frames)[0]))
-    states, found = states_in_fixed_frame(rows, frames, fixed, topic)
-    findings += found
+    states, frame_findings = states_in_fixed_frame(rows, frames, fixed, topic)
+    findings += frame_findings
     if not np.isfinite(states.numbers["x_m"]).any():
-        raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
+        raise TraceError(
+            f"{path}: nothing can be placed: {frame_findings[-1].message if frame_findings else 'no positions'}"
+        )
     recording = Recording("foxglove-mcap", states, findings=findings, lost_times=lost_times)
     recording.fixed_frame = fixed
     recording.notes = [f"positions are in the frame {fixed!r}"]
@@ -250,9 +252,9 @@ def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
     spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}
     endless = min((since for since, until in spans if until is None), default=None)
     ended = sorted((since, until) for since, until in spans if until is not None)
-    what = f"{topic}: an entity without an id"
-    found = [LostTime(since, until, what) for since, until in ended if endless is None or since < endless]
-    return found if endless is None else [*found, LostTime(endless, None, what)]
+    cause = f"{topic}: an entity without an id"
+    lost_times = [LostTime(since, until, cause) for since, until in ended if endless is None or since < endless]
+    return lost_times if endless is None else [*lost_times, LostTime(endless, None, cause)]
 
 
 def _deletions(scene: _TopicContent, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:
@@ -263,11 +265,11 @@ def _deletions(scene: _TopicContent, rows: RecordedPoses, *, own_times: bool) ->
     order = np.argsort(rows.log_ns, kind="stable")
     log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
     times, ids = [np.zeros(0, np.int64)], []
-    for t_ns, timed, sent_ns, whom in scene.deletions:
+    for t_ns, timed, sent_ns, deleted_ids in scene.deletions:
         at = np.searchsorted(log_ns, sent_ns, side="right") - 1
         last = np.where(at >= 0, latest[np.maximum(at, 0)], np.iinfo(np.int64).min)
         times.append(np.where(timed & own_times, t_ns, last if own_times else sent_ns))
-        ids += whom
+        ids += deleted_ids
     return np.concatenate(times), ids
 
 

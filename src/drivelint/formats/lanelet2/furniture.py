@@ -51,7 +51,7 @@ def _signal_rows(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float,
         for element in sorted(x.regulatoryElements, key=lambda r: r.id):
             s = _signal_station(element, lane, offset)
             place = np.array([np.interp(s, lane.line.s, c) for c in lane.line.centre.T])
-            said = {"country": attribute(x, "region") or None, "type": attribute(element, "subtype")}
+            columns = {"country": attribute(x, "region") or None, "type": attribute(element, "subtype")}
             rows += [
                 signal_row(
                     lane,
@@ -59,7 +59,7 @@ def _signal_rows(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float,
                     place,
                     signal_id=str(element.id),
                     kind=kind,
-                    **said,
+                    **columns,
                     dynamic=kind == "traffic_light" or is_dynamic(element),
                 )
                 for kind in _signal_kinds(element, x)
@@ -134,12 +134,12 @@ def _stop_line_rows(
         if attribute(line, "type") != "stop_line" or len(line) < 2 or not np.isfinite(points).all():
             continue
         near = [drivable_lanes[i] for i in sorted(tree.query(shapely.LineString(points).buffer(STOP_LINE_TOLERANCE_M)))]
-        own = [
+        own_stations = [
             (lane, s)
             for lane in near
             if lane.lanelet_id in referring[line.id] and (s := _station_where_crossed(lane, points)) is not None
         ]
-        lane_stations = own or [
+        lane_stations = own_stations or [
             (lane, s) for lane in near if (s := _station_where_crossed(lane, points, tolerance_m=0.0)) is not None
         ]
         followers = {name for lane, _ in lane_stations for name in lane.successors}
@@ -156,19 +156,19 @@ def _stop_line_rows(
 
 def _lanes_by_stop_line(layers: Any) -> dict[int, set[str]]:
     """Return stop line -> the lanes that refer to it by a regulatory element."""
-    found: dict[int, set[str]] = defaultdict(set)
+    lane_ids: dict[int, set[str]] = defaultdict(set)
     for x in layers.laneletLayer:
         for element in x.regulatoryElements:
             for line in _parameter_members(element, "ref_line"):
-                found[line.id].add(str(x.id))
-    return found
+                lane_ids[line.id].add(str(x.id))
+    return lane_ids
 
 
 def _crosswalks(layers: Any, lanes: Sequence[BoundedLane]) -> Iterator[BoundedLane]:
     """Yield the crosswalks, except those that their tags make lanes."""
-    driven = {lane.lanelet_id for lane in lanes}
+    lane_ids = {lane.lanelet_id for lane in lanes}
     for x in sorted(layers.laneletLayer, key=lambda x: x.id):
-        if attribute(x, "subtype") == "crosswalk" and str(x.id) not in driven:
+        if attribute(x, "subtype") == "crosswalk" and str(x.id) not in lane_ids:
             marks = {attribute(bound, "type") for bound in (x.leftBound, x.rightBound)}
             kind = "zebra" if "zebra_marking" in marks else "crossing"
             yield BoundedLane(str(x.id), line_points(x.leftBound), line_points(x.rightBound), kind)

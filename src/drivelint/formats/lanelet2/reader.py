@@ -44,8 +44,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     mark_junctions(lanes)
     regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
     by_region = {"lht" if region[:2].lower() in _LEFT_DRIVING_NATIONS else "rht" for region in regions}
-    said = by_region.pop() if len(by_region) == 1 else None
-    side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
+    side_of_regions = by_region.pop() if len(by_region) == 1 else None
+    side = choose_side(
+        [("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", side_of_regions)], quality
+    )
     beside = furniture_rows(layers, lanes, request.offset, quality)
     geo = None if request.origin is None or local else tangent_plane_frame(*request.origin)
     return map_from_bounds(
@@ -64,7 +66,7 @@ def _bound_key(line: Any, *, is_reversed: bool = False) -> BoundKey:
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
     """Yield the lanes. Neighbours share a bound; a successor begins at the two points where a lane ends."""
     rules = TrafficRules()
-    access = {x.id: found for x in layers.laneletLayer if (found := rules.access(x)) is not None}
+    access = {x.id: lane_access for x in layers.laneletLayer if (lane_access := rules.access(x)) is not None}
     lanelets = sorted((x for x in layers.laneletLayer if x.id in access), key=lambda x: x.id)
     for x in [x for x in lanelets if not (len(x.leftBound) and len(x.rightBound))]:
         lanelets.remove(x)
@@ -85,8 +87,8 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         readable = limit_mps is None or math.isfinite(limit_mps)
         limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
-            what = _why_no_limit(x)
-            quality.add("invalid_speed", "warning", str(x.id), f"{what}: treated as unknown")
+            reason = _why_no_limit(x)
+            quality.add("invalid_speed", "warning", str(x.id), f"{reason}: treated as unknown")
         lane = BoundedLane(
             str(x.id), line_points(x.leftBound), line_points(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
             road_type=_road_type(x),
@@ -108,8 +110,8 @@ def _why_no_limit(lanelet: Any) -> str:
     """Return why the limit that a lanelet states is not known."""
     if any(attribute(rule, "subtype") == "speed_limit" and is_dynamic(rule) for rule in lanelet.regulatoryElements):
         return "its limit is dynamic: what it is at a time is not in the map"
-    said = limit_text(lanelet)
-    return "its sign has no limit that can be read" if said is None else f"{said[:20]!r} is not a speed limit"
+    text = limit_text(lanelet)
+    return "its sign has no limit that can be read" if text is None else f"{text[:20]!r} is not a speed limit"
 
 
 def _neighbour_id_and_against(

@@ -131,6 +131,6 @@ def is_dynamic(element: Any) -> bool:
 
 def speed_mps(text: str) -> float:
     """Return a speed in m/s; NaN for a text that is not one positive number, with a known unit or without a unit."""
-    found = _SPEED_PATTERN.fullmatch(text.lower())
-    speed = float(found[1]) * _UNITS_MPS.get(found[2], math.nan) if found else math.nan
+    match = _SPEED_PATTERN.fullmatch(text.lower())
+    speed = float(match[1]) * _UNITS_MPS.get(match[2], math.nan) if match else math.nan
     return speed if speed > 0.0 else math.nan

@@ -76,7 +76,7 @@ def bag_files(path: Path) -> list[Path]:
             )
         files.append(file)
     suffix = SUFFIX_BY_STORAGE.get(storage, ".mcap")
-    if unlisted := sorted(each.name for each in path.glob(f"*{suffix}") if each not in files):
+    if unlisted := sorted(file.name for file in path.glob(f"*{suffix}") if file not in files):
         raise TraceError(
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or remove the file from its folder"
         )
@@ -116,7 +116,7 @@ def _bag_file(folder: Path, name: str) -> Path | None:
     """Return the file of a bag, or None if it is missing."""
     # older recorders list only a file's name, or prefix it with the folder's name
     return next(
-        (each for each in (folder / name, folder / name.rsplit("/", 1)[-1]) if report_searched_path(each).is_file()),
+        (place for place in (folder / name, folder / name.rsplit("/", 1)[-1]) if report_searched_path(place).is_file()),
         None,
     )
 
@@ -167,10 +167,10 @@ def missing_message_findings(
         for number, n in part.counts.by_channel.items():
             counts[part.channels[number].topic] += n
     findings = []
-    for topic, kind, counted in _topics_with_counts(_bag_metadata(path)):
-        if counted > counts[topic] and is_read(topic, message_kind(kind)):
-            n = counted - counts[topic]
-            message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {counts[topic]}: {n} are lost"
+    for topic, kind, n_listed in _topics_with_counts(_bag_metadata(path)):
+        if n_listed > counts[topic] and is_read(topic, message_kind(kind)):
+            n = n_listed - counts[topic]
+            message = f"{METADATA_FILE} counts {n_listed} messages of topic {topic!r}, the bag has {counts[topic]}: {n} are lost"
             findings.append(QualityFinding("index_mismatch", "error", message, n))
     return findings
 
@@ -178,8 +178,8 @@ def missing_message_findings(
 def _topics_with_counts(metadata: Any) -> Iterator[tuple[str, str, int]]:
     """Yield name, type and number of messages of each topic in a bag's description; skip entries that are not as rosbag2 writes them."""
     topics = metadata.get("topics_with_message_count")
-    for each in topics if isinstance(topics, list) else ():
-        match each:
+    for entry in topics if isinstance(topics, list) else ():
+        match entry:
             case {"topic_metadata": {"name": str(name), "type": str(kind)}, "message_count": int(n)}:
                 yield name, kind, n
 
@@ -192,13 +192,13 @@ def message_family(path: Path) -> str:
     """
     parts = bag_files(path)
     for schemas in (_schema_names_in_index, _schema_names_in_data):
-        found = {message_kind(name) for file in parts for name in schemas(file)}
-        if found & OSI_SCHEMAS:
+        kinds = {message_kind(name) for file in parts for name in schemas(file)}
+        if kinds & OSI_SCHEMAS:
             return "osi"
         for name, roles in (("ros2", ROS_ROLE_BY_SCHEMA), ("foxglove", FOXGLOVE_ROLE_BY_SCHEMA)):
-            if {roles.get(schema) for schema in found} & {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
+            if {roles.get(schema) for schema in kinds} & {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
                 return name
-        if TRANSFORMS in found:
+        if TRANSFORMS in kinds:
             return "ros2"  # they may place the ego
     return "none"
 
@@ -217,7 +217,7 @@ def kinds_by_topic(path: Path) -> dict[str, str]:
 
     Errors: `TraceError` for a damaged file.
     """
-    found = {}
+    kind_by_topic = {}
     for file in bag_files(path):
         part: Summary | Container = file_index(file)
         if not part.channels:
@@ -226,8 +226,8 @@ def kinds_by_topic(path: Path) -> dict[str, str]:
                 pass
         for channel in part.channels.values():
             schema = part.schemas.get(channel.schema_id)
-            found[channel.topic] = message_kind(schema.name) if schema else "no schema"
-    return found
+            kind_by_topic[channel.topic] = message_kind(schema.name) if schema else "no schema"
+    return kind_by_topic
 
 
 def _schema_names_in_index(file: Path) -> set[str]:

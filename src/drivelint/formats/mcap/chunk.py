@@ -121,6 +121,8 @@ def _decompressed_records(chunk: PackedChunk) -> bytes:
     except (zstandard.ZstdError, RuntimeError, EOFError) as error:
         raise ChunkError(f"a chunk that cannot be unpacked ({error})") from error
     if len(records) != size:
-        found = len(records) if chunk.compression else len(packed)
-        raise ChunkError(f"a chunk whose header states an unpacked size of {size} bytes, but which unpacks to {found}")
+        n_bytes = len(records) if chunk.compression else len(packed)
+        raise ChunkError(
+            f"a chunk whose header states an unpacked size of {size} bytes, but which unpacks to {n_bytes}"
+        )
     return records

@@ -49,13 +49,15 @@ class MessageCounts:
         These messages are added to the counts, because the caller reports them as lost.
         """
         channel, length = MESSAGE_INDEX_HEADER.unpack_from(index)
-        found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
-        if found is None or length <= _MESSAGE_INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
+        times = None if self._last_chunk is None else self._last_chunk.get(channel, [])
+        if times is None or length <= _MESSAGE_INDEX_ENTRY.size * len(times) or channel in self.unread_channels:
             return []
-        named = Counter(log_ns for log_ns, _ in _MESSAGE_INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
-        missing = sorted((named - Counter(found)).elements())
-        self.by_channel[channel] += len(missing)
-        return missing
+        index_times = Counter(
+            log_ns for log_ns, _ in _MESSAGE_INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :])
+        )
+        lacking = sorted((index_times - Counter(times)).elements())
+        self.by_channel[channel] += len(lacking)
+        return lacking
 
     def contradiction_text(
         self, statistics: Statistics, channels: Mapping[int, Channel], *, is_damaged: bool

@@ -85,22 +85,22 @@ class Losses:
     @property
     def has_lost_bytes(self) -> bool:
         """Whether bytes are lost, not only single messages that cannot be decoded."""
-        return any(each.end > each.start for each in self.lost_bytes)
+        return any(loss.end > loss.start for loss in self.lost_bytes)
 
     def covers(self, offset: int) -> bool:
         """Return whether the byte at `offset` is lost."""
-        return any(each.start <= offset < each.end for each in self.lost_bytes)
+        return any(loss.start <= offset < loss.end for loss in self.lost_bytes)
 
     def bound_loss_times_by_chunks(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
         """Bound the times of lost bytes by the times that the index has for the chunks in them.
 
         `chunks`: offset of a chunk -> its length, first and last log time.
         """
-        for k, each in enumerate(self.lost_bytes):
-            inside = [times for offset, (_, *times) in chunks.items() if each.start <= offset < each.end]
-            if inside and not each.timed:
+        for k, loss in enumerate(self.lost_bytes):
+            inside = [times for offset, (_, *times) in chunks.items() if loss.start <= offset < loss.end]
+            if inside and not loss.timed:
                 since, until = min(a for a, _ in inside) - 1, max(b for _, b in inside) + 1
-                self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
+                self.lost_bytes[k] = replace(loss, since_ns=since, until_ns=until, timed=True)
 
     def lost_times(self, path: Path) -> list[LostTime]:
         """Return the losses as ranges of log time, each with a text for the user."""
@@ -111,11 +111,11 @@ class Losses:
                 since = until = None
             elif since is not None and until is not None and until < since:
                 since, until = until, since
-            what = loss.cause.removeprefix(f"{path}: ")
-            what = what.partition(": the log is damaged")[0].partition(": record or copy")[0]
+            cause = loss.cause.removeprefix(f"{path}: ")
+            cause = cause.partition(": the log is damaged")[0].partition(": record or copy")[0]
             if loss.end > loss.start:
-                what = f"{loss.end - loss.start} bytes from byte {loss.start} on cannot be read ({what})"
-            lost_times.append(LostTime(since, until, f"{path.name}: {what}"))
+                cause = f"{loss.end - loss.start} bytes from byte {loss.start} on cannot be read ({cause})"
+            lost_times.append(LostTime(since, until, f"{path.name}: {cause}"))
         return lost_times
 
 
@@ -126,9 +126,16 @@ def lost_times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
     """
     lost_times = []
     for k, (path, losses) in enumerate(parts):
-        before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)
-        after = min((each.first_ns for _, each in parts[k + 1 :] if each.first_ns is not None), default=None)
-        for lost in losses.lost_times(path):
-            since = before if lost.since_ns is None else lost.since_ns
-            lost_times.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
+        before = max(
+            (other_losses.last_ns for _, other_losses in parts[:k] if other_losses.last_ns is not None), default=None
+        )
+        after = min(
+            (other_losses.first_ns for _, other_losses in parts[k + 1 :] if other_losses.first_ns is not None),
+            default=None,
+        )
+        for lost_time in losses.lost_times(path):
+            since = before if lost_time.since_ns is None else lost_time.since_ns
+            lost_times.append(
+                lost_time._replace(since_ns=since, until_ns=after if lost_time.until_ns is None else lost_time.until_ns)
+            )
     return lost_times

@@ -124,7 +124,7 @@ class OriginalFile:
 
     def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
         """Return the message index of a chunk, made by unpacking the chunk."""
-        inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
+        inside = (record_inside for record_inside in self.chunk_records(record) if record_inside[0] == Opcode.MESSAGE)
         return message_index((*_MESSAGE_HEADER.unpack_from(body), at) for _, at, body in inside)
 
     def channel_and_n_messages(self, message_index: Record) -> tuple[int, int]:

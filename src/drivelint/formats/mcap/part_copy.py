@@ -67,7 +67,7 @@ class IdsInCopy:
 
 
 def _id_in_copy(declaration: T, records_by_id: dict[int, T], kind: str, *, least: int) -> int:
-    same = [number for number, known in records_by_id.items() if replace(known, id=0) == replace(declaration, id=0)]
+    same = [number for number, earlier in records_by_id.items() if replace(earlier, id=0) == replace(declaration, id=0)]
     if declaration.id not in records_by_id or declaration.id in same:
         return declaration.id
     return min(same) if same else unused_id(records_by_id, least, kind)
@@ -220,11 +220,13 @@ class PartCopy:
         messages = [record for record in loose if record.opcode == Opcode.MESSAGE]
         if self._has_new_ids:
             self._flush()
-            self._write_with_new_ids((each.opcode, self._original.read(each.body_at, each.end)) for each in loose)
+            self._write_with_new_ids(
+                (record.opcode, self._original.read(record.body_at, record.end)) for record in loose
+            )
             self._from = end
         elif messages:
             self._flush()
-            index = message_index((*self._original.message_header(each), each.at - start) for each in messages)
+            index = message_index((*self._original.message_header(record), record.at - start) for record in messages)
             self._sink.add_chunk(self._original.read(start, end), index, compressed=False)
             self._from = end
         self._to = end

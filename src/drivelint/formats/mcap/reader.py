@@ -160,10 +160,10 @@ class Container:
             raise self._damage_error(at, "no record (zero bytes)")
         self._refuse_second_file(view, at)
         if length > len(view) - start:
-            what = f"a {_record_name(opcode)} record of {length} bytes, of which {len(view) - start} are present,"
+            text = f"a {_record_name(opcode)} record of {length} bytes, of which {len(view) - start} are present,"
             if length >= MOST_RECORD_BYTES and opcode in _OPCODES:
-                raise TraceError(str(self._damage_error(at, what)))
-            raise self._damage_error(at, what)
+                raise TraceError(str(self._damage_error(at, text)))
+            raise self._damage_error(at, text)
         end = start + length
         wrong = length != _LENGTH_BY_OPCODE.get(opcode, length)
         if opcode == Opcode.MESSAGE_INDEX:
@@ -348,17 +348,17 @@ class Container:
                 if not self.salvage:
                     raise error
                 self.losses.add(offset, offset + length, str(error), since, until)
-        if missing := [at for at in index.metadata if at not in self._read_offsets]:
-            raise self._damage_error(missing[0], "no metadata record, where the index has one,")
+        if lacking := [at for at in index.metadata if at not in self._read_offsets]:
+            raise self._damage_error(lacking[0], "no metadata record, where the index has one,")
         if index.chunks:
             self.losses.bound_loss_times_by_chunks(index.chunks)
 
     def _report_counts_and_missing_crcs(self) -> None:
         if self._statistics is not None and not self.losses.has_lost_bytes:
-            is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
-            told = self.counts.contradiction_text(self._statistics, self.channels, is_damaged=is_damaged)
-            if told is not None:
-                message = f"the index counts {told}: the present messages are read, the missing ones are lost"
+            is_damaged = any(finding.check_id == "index_damaged" for finding in self.findings)
+            contradiction = self.counts.contradiction_text(self._statistics, self.channels, is_damaged=is_damaged)
+            if contradiction is not None:
+                message = f"the index counts {contradiction}: the present messages are read, the missing ones are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._n_unprotected:
             message = f"chunks without a CRC: {self._n_unprotected}: flipped bits in them remain undetected"
@@ -383,8 +383,8 @@ def message_batches(
         if kind is None:
             container.counts.unread_channels.add(log_message.channel.id)
             continue
-        changed = topic in waiting and waiting[topic][1][0].channel.schema_id != log_message.channel.schema_id
-        if changed or sizes[topic] >= BATCH_BYTES:
+        is_other_schema = topic in waiting and waiting[topic][1][0].channel.schema_id != log_message.channel.schema_id
+        if is_other_schema or sizes[topic] >= BATCH_BYTES:
             yield waiting.pop(topic)
             sizes[topic] = 0
         waiting.setdefault(topic, (kind, []))[1].append(log_message)

@@ -49,12 +49,12 @@ def next_record_offset(view: memoryview, at: int, *, channels: Container[int] | 
         if end <= len(view):
             if opcode == Opcode.CHUNK:
                 bytes_to_unpack -= length + _declared_unpacked_bytes(view[start:end])
-                found = _is_intact_chunk(view[start:end])
+                is_record = _is_intact_chunk(view[start:end])
             else:
-                found = _is_end_of_data(view, opcode, start, end) or (
+                is_record = _is_end_of_data(view, opcode, start, end) or (
                     opcode == Opcode.MESSAGE and channels is not None and _has_message_chain(view, place, channels)
                 )
-            if found:
+            if is_record:
                 return place
         place += 1
     return len(view)

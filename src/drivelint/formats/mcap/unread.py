@@ -35,17 +35,17 @@ class UnreadTopics:
 
     def discard(self, kind: str) -> None:
         """Forget the topics of a kind."""
-        self.topics = {topic: what for topic, what in self.topics.items() if what[0] != kind}
+        self.topics = {topic: facts for topic, facts in self.topics.items() if facts[0] != kind}
 
     def texts(self) -> list[str]:
         """Return for each topic why it is not read."""
-        return [_topic_text(topic, *what) for topic, what in sorted(self.topics.items())]
+        return [_topic_text(topic, *facts) for topic, facts in sorted(self.topics.items())]
 
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
         return [
-            QualityFinding("unread_topic", "error", f"{text}: its content is unknown", what[2])
-            for text, (_, what) in zip(self.texts(), sorted(self.topics.items()), strict=True)
+            QualityFinding("unread_topic", "error", f"{text}: its content is unknown", facts[2])
+            for text, (_, facts) in zip(self.texts(), sorted(self.topics.items()), strict=True)
         ]
 
     def refuse_kinds(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
@@ -53,10 +53,10 @@ class UnreadTopics:
 
         `read_topics`: topics of these kinds in a supported encoding; the error proposes the first.
         """
-        for topic, what in sorted(self.topics.items()):
-            if what[0] in kinds:
+        for topic, facts in sorted(self.topics.items()):
+            if facts[0] in kinds:
                 choice = f", or judge without it: --topic {min(read_topics)}" if read_topics else ""
-                raise TraceError(f"{path}: {_topic_text(topic, *what)}: its actors are unknown: convert it{choice}")
+                raise TraceError(f"{path}: {_topic_text(topic, *facts)}: its actors are unknown: convert it{choice}")
 
 
 def _topic_text(topic: str, kind: str, why: str, n: int) -> str:

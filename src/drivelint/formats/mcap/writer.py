@@ -65,7 +65,7 @@ class Sink:
 
         `schema` has the id 0, as its id is chosen here. Errors: `DriveLintError` if no id is free.
         """
-        same = [number for number, known in self.schemas.items() if replace(known, id=0) == replace(schema, id=0)]
+        same = [number for number, earlier in self.schemas.items() if replace(earlier, id=0) == replace(schema, id=0)]
         number = min(same) if same else unused_id(self.schemas, 1, "schema")
         if not same:
             self.schemas[number] = replace(schema, id=number)

@@ -27,7 +27,7 @@ def lane_type_and_unread(lane: etree._Element, lane_type: str) -> tuple[str, boo
     A driving lane that is for buses all along, also with taxis or cycles, is of type `bus`; one for taxis of type `taxi`. Errors:
     `MalformedError` if a station is no number.
     """
-    allowed: set[str] = set()
+    vehicles: set[str] = set()
     denied: set[str] = set()
     stations = set()
     for access in lane.findall("access"):
@@ -38,16 +38,16 @@ def lane_type_and_unread(lane: etree._Element, lane_type: str) -> tuple[str, boo
         stations.add(number_attribute(access, "sOffset", 0.0))
         # Before OpenDRIVE 1.5 an access had no rule: its words may be those of either.
         if access.get("rule") != "deny":
-            allowed |= words
+            vehicles |= words
         if access.get("rule") != "allow":
             denied |= words
     is_unread = any(rule.get("value", "").strip().lower() not in _RULES_FOR_EVERYBODY for rule in lane.findall("rule"))
     is_unread |= lane.get("roadWorks", lane.get("roadworks")) in {"true", "1"}
-    cars_are_allowed = not allowed or (_CAR in allowed and len(stations) == 1)
+    cars_are_allowed = not vehicles or (_CAR in vehicles and len(stations) == 1)
     if cars_are_allowed and not denied & _SOME_CARS:
         return lane_type, is_unread
     if lane_type == "driving" and stations == {0.0} and not denied:
         for word in ("bus", "taxi"):
-            if word in allowed:
+            if word in vehicles:
                 return word, is_unread
     return lane_type, True

@@ -32,7 +32,9 @@ def cross_paths(
     for lane in lanes:
         if lane.lane.kind in _WALKED_LANE_TYPES:
             walked.setdefault(lane.road.road_id, []).append(lane)
-    drawn = shapely.union_all([_polygon(c.outline) for c in crossings if c.outline is not None and len(c.outline) > 2])
+    drawn_area = shapely.union_all(
+        [_polygon(c.outline) for c in crossings if c.outline is not None and len(c.outline) > 2]
+    )
     paths = []
     for junction, element in net.cross_paths:
         name = f"{junction}/{element.get('id', '')}"
@@ -42,7 +44,10 @@ def cross_paths(
             message = f"cross path {name} is left out: {error}"
             quality.add("invalid_object", "warning", element.get("crossingRoad"), message)
             continue
-        if path is not None and shapely.area(shapely.intersection(_polygon(path.outline), drawn)) < _MIN_COMMON_AREA_M2:
+        if (
+            path is not None
+            and shapely.area(shapely.intersection(_polygon(path.outline), drawn_area)) < _MIN_COMMON_AREA_M2
+        ):
             paths.append(path)
     return paths
 

@@ -82,10 +82,10 @@ class DrivingSideStatements:
             ),
             ("traces", request.voted_handedness, "the traces fit", True),
         ]
-        said = tuple(
+        sides = tuple(
             DrivingSideStatement(source, side, text, of) for source, side, text, of in candidates if side is not None
         )
-        return cls(said, roads, _decisive_side(travel))
+        return cls(sides, roads, _decisive_side(travel))
 
     def direction_on_two_way_roads(self) -> DrivingDirection:
         """Return the direction of the lanes on two-way roads, where it follows from the driving side."""

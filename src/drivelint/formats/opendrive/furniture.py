@@ -40,13 +40,15 @@ def furniture_rows(
     """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
     signals, painted = signal_and_stop_line_rows(net, lanes, offset, quality)
     objects = _placed_objects(net, offset, quality)
-    paths = cross_paths(net, lanes, [placed for placed in objects if placed.kind == "crossing"], quality)
+    paths = cross_paths(
+        net, lanes, [placed_object for placed_object in objects if placed_object.kind == "crossing"], quality
+    )
     drivable = [lane for lane in lanes if lane.drivable]
     stop_lines, crossings = _stop_lines_and_crossings([*objects, *paths], drivable, quality)
     return {
         "traffic_signal": signals,
         "stop_line": sorted([*painted, *stop_lines], key=lambda r: (r["stop_line_id"], r["lanelet_id"], r["lane_s_m"])),
-        "road_object": [placed.road_object_row() for placed in objects],
+        "road_object": [placed_object.road_object_row() for placed_object in objects],
         "crossing": crossings,
     }
 
@@ -126,8 +128,8 @@ def _lies_across(lane: Lanelet, corners: Floats, common_points: Floats, mean_sta
 
 
 def _crossing_kind(crossing: PlacedObject) -> str | None:
-    said = f"{crossing.element.get('subtype', '')} {crossing.element.get('name', '')}".lower()
-    return "zebra" if "zebra" in said else "signalled" if "signal" in said else None
+    words = f"{crossing.element.get('subtype', '')} {crossing.element.get('name', '')}".lower()
+    return "zebra" if "zebra" in words else "signalled" if "signal" in words else None
 
 
 def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuality) -> list[PlacedObject]:
@@ -221,10 +223,12 @@ def _continuous_object_along_road(
 
 def _outline_corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats | None:
     for path in (f"outline/{tag}", f"outlines/outline/{tag}"):
-        found = element.findall(path)
-        if found:
-            mine = [c for c in found if c.getparent() is found[0].getparent()]  # the first outline of several
-            return np.array([[number_attribute(c, axis) for axis in axes] for c in mine])
+        elements = element.findall(path)
+        if elements:
+            first_outline = [
+                c for c in elements if c.getparent() is elements[0].getparent()
+            ]  # the first outline of several
+            return np.array([[number_attribute(c, axis) for axis in axes] for c in first_outline])
     return None
 
 

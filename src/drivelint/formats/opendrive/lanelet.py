@@ -66,8 +66,8 @@ class Lanelet:
 
     def lanelet_spans(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
         """Return spans (index, from, to) of road stations as spans of lanelet stations, in the direction of travel."""
-        found = [(i, self.station_at(a), self.station_at(b)) for i, a, b in spans]
-        ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
+        stations = [(i, self.station_at(a), self.station_at(b)) for i, a, b in spans]
+        ordered = [(i, min(a, b), max(a, b)) for i, a, b in stations if abs(b - a) > 1e-6]
         return sorted(ordered, key=lambda r: r[1])
 
     def mean_width_m(self) -> float:
@@ -91,9 +91,9 @@ def recorded_limit_rows(lanelet: Lanelet) -> Rows:
 
 
 def _rows_of_limit(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, source: str) -> Rows:
-    limit, said = speed.limit_mps, source if speed.readable else "unread"
+    limit, source_word = speed.limit_mps, source if speed.readable else "unread"
     return [
-        {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
+        {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": source_word}
         for _, a, b in lanelet.lanelet_spans([(0, start, end)])
     ]
 

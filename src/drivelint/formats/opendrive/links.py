@@ -115,9 +115,9 @@ def _lane_key_at_end(road: Road, contact: str, lane_no: int) -> LaneKey:
 def _junction_contacts(net: Network, connection: Connection, quality: MapQuality) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     incoming, connecting = net.roads.get(connection.incoming), net.roads.get(connection.connecting)
     if incoming is None or connecting is None:
-        gone = connection.incoming if incoming is None else connection.connecting
-        message = f"junction {connection.junction_id} connects road {gone}, which does not exist"
-        quality.add("missing_link", "error", gone, message, max(len(connection.lanes), 1))
+        absent = connection.incoming if incoming is None else connection.connecting
+        message = f"junction {connection.junction_id} connects road {absent}, which does not exist"
+        quality.add("missing_link", "error", absent, message, max(len(connection.lanes), 1))
         return
     end, contact = _end_at_junction(incoming, connecting, connection), connection.contact
     for source, target in connection.lanes:
@@ -151,9 +151,9 @@ def _contacts_through_short_lanes(
         beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}
         for pair in [p for p in result if key in {p[0][0], p[1][0]}]:
             result.discard(pair)
-            for mine, other in (pair, pair[::-1]):
-                if mine[0] == key and other[0] != key:
-                    beside[mine[1]].add(other)
+            for first, second in (pair, pair[::-1]):
+                if first[0] == key and second[0] != key:
+                    beside[first[1]].add(second)
         result |= {(min(a, b), max(a, b)) for a in beside[START] for b in beside[END]}
     return result
 
@@ -162,9 +162,9 @@ def _directed_link(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQualit
     """Return the link in the direction of travel; None if a lane was left out or the directions contradict each other (reported)."""
     first, second = lanes.built.get(a[0]), lanes.built.get(b[0])
     if first is None or second is None:
-        for end, other in ((a, b), (b, a)):
-            if other[0] in lanes.failed and end[0] in lanes.built:
-                _report_missing_link(lanes, end, f"lane {lanelet_id(other[0])}, which could not be built", quality)
+        for end, far_end in ((a, b), (b, a)):
+            if far_end[0] in lanes.failed and end[0] in lanes.built:
+                _report_missing_link(lanes, end, f"lane {lanelet_id(far_end[0])}, which could not be built", quality)
         return None
     leaves, enters = _exit_end(first) == a[1], _exit_end(second) != b[1]
     if leaves and enters:

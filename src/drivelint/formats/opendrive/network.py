@@ -163,10 +163,10 @@ def road_network(root: etree._Element, quality: MapQuality) -> Network:
             quality.add("invalid_road", "error", name, message, max(lanes, 1))
         else:
             roads[road.road_id] = road
-    said = [element.get("country") for element in root.iterfind("road/type")]
-    said += [element.get("country") for element in root.iterfind("road/signals/signal")]
+    countries = [element.get("country") for element in root.iterfind("road/type")]
+    countries += [element.get("country") for element in root.iterfind("road/signals/signal")]
     return Network(
-        roads, tuple(connections(root, quality)), cross_paths(root), _geo_frame(root, quality), only_nation(said)
+        roads, tuple(connections(root, quality)), cross_paths(root), _geo_frame(root, quality), only_nation(countries)
     )
 
 
@@ -220,9 +220,9 @@ def _road_links(element: etree._Element) -> dict[str, RoadLink]:
     joins = {}
     for end, name in ((START, "predecessor"), (END, "successor")):
         link = element.find(f"link/{name}")
-        if link is not None and (other := link.get("elementId")) is not None:
+        if link is not None and (element_id := link.get("elementId")) is not None:
             contact = link.get("contactPoint") if link.get("contactPoint") in {START, END} else None
-            joins[end] = RoadLink(link.get("elementType") == "junction", other, contact)
+            joins[end] = RoadLink(link.get("elementType") == "junction", element_id, contact)
     return joins
 
 
@@ -230,7 +230,7 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
     sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number_attribute(item[1], "s"))
     if not sections:
         raise MalformedError("it has no <laneSection>")
-    found = []
+    lane_sections = []
     ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
     for index, section in sections:
         if _has_numbers_of_other_side(section):
@@ -250,16 +250,20 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
             numbers = [lane.number for lane in lanes]
             if len(set(numbers)) < len(numbers):
                 raise MalformedError(f"section {index} has the same lane twice")
-            found.append(LaneSection(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks))
-    return tuple(found)
+            lane_sections.append(
+                LaneSection(index, start, end, tuple(sorted(lanes, key=lambda lane: lane.number)), marks)
+            )
+    return tuple(lane_sections)
 
 
 def _section_ends(sections: list[etree._Element], side: str, length: float) -> dict[etree._Element, float]:
     """Return the end of each section that describes this side of the road; a `singleSide` section may describe only the other side."""
-    other = "left" if side == "right" else "right"
-    mine = [s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other) is None]
-    ends = [min(number_attribute(s, "s"), length) for s in mine[1:]] + [length]
-    return dict(zip(mine, ends, strict=True))
+    other_side = "left" if side == "right" else "right"
+    of_side = [
+        s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other_side) is None
+    ]
+    ends = [min(number_attribute(s, "s"), length) for s in of_side[1:]] + [length]
+    return dict(zip(of_side, ends, strict=True))
 
 
 def _divide_at_road_types(sections: Sequence[LaneSection], types: Sequence[RoadType]) -> tuple[LaneSection, ...]:
@@ -378,8 +382,8 @@ def _speed_limits(
             posted = None if limit is None else quality.limit_unless_placeholder(limit)
             speeds.append(SpeedLimit(start, posted, is_stated=True, readable=posted is not None))
             if limit is None:
-                said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
-                message = f"line {speed.sourceline}: {said} is not a speed limit: treated as unknown"
+                text = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
+                message = f"line {speed.sourceline}: {text} is not a speed limit: treated as unknown"
                 quality.add("invalid_speed", "warning", None, message)
     return tuple(sorted(speeds, key=lambda s: s.start_m))
 

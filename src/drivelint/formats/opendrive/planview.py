@@ -157,8 +157,8 @@ class PlanView:
         inside = np.clip(ds, 0.0, self.length[k])
         local = np.empty((6, len(s)))
         for i in np.unique(k):
-            mine = k == i
-            local[:, mine] = self.shapes[i].evaluate(inside[mine])
+            of_shape = k == i
+            local[:, of_shape] = self.shapes[i].evaluate(inside[of_shape])
         u, v, cos, sin, curvature, speed = local
         beyond = ds - inside  # a gap in the stations is bridged by a straight line; an offset at its end is reported
         u, v, curvature = u + beyond * cos, v + beyond * sin, np.where(np.abs(beyond) > 1e-3, 0.0, curvature)
@@ -178,14 +178,14 @@ class PlanView:
 
 def planview(element: etree._Element | None) -> PlanView:
     """Read `<planView>`; `MalformedError` for a geometry that is missing, unknown or impossible."""
-    found = [] if element is None else sorted(element.findall("geometry"), key=lambda g: number_attribute(g, "s"))
-    found = [g for g in found if number_attribute(g, "length") > 0.0]
-    if not found:
+    geometries = [] if element is None else sorted(element.findall("geometry"), key=lambda g: number_attribute(g, "s"))
+    geometries = [g for g in geometries if number_attribute(g, "length") > 0.0]
+    if not geometries:
         raise MalformedError("the road has no <geometry> with a length")
     s, x, y, heading, length = np.array(
-        [[number_attribute(g, a) for a in ("s", "x", "y", "hdg", "length")] for g in found]
+        [[number_attribute(g, a) for a in ("s", "x", "y", "hdg", "length")] for g in geometries]
     ).T
-    return PlanView(s, x, y, heading, length, tuple(_shape(g) for g in found))
+    return PlanView(s, x, y, heading, length, tuple(_shape(g) for g in geometries))
 
 
 def _shape(geometry: etree._Element) -> Shape:

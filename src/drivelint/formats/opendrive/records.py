@@ -12,5 +12,5 @@ if TYPE_CHECKING:
 def record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
     """Return (record index, from, to) of the records that apply between two stations; index -1: before the first record."""
     edges = [float("-inf"), *starts, float("inf")]
-    cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
-    return [(i, a, b) for i, a, b in cut if b - a > 1e-6]
+    spans = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
+    return [(i, a, b) for i, a, b in spans if b - a > 1e-6]

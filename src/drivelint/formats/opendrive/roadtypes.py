@@ -38,17 +38,17 @@ def type_stretches(types: Sequence[RoadType], start: float, end: float) -> list[
         return [(None, start, end)]
     # A lane section may itself be shorter than the least stretch.
     least = min(_LEAST_TYPE_M, 0.5 * max(b - a for _, a, b in stretches))
-    kept = _join_equal_types(stretch for stretch in stretches if stretch[2] - stretch[1] > least)
-    edges = [start, *(a for _, a, _ in kept[1:]), end]
-    return [(kind, a, b) for (kind, _, _), (a, b) in zip(kept, pairwise(edges), strict=True)]
+    long_stretches = _join_equal_types(stretch for stretch in stretches if stretch[2] - stretch[1] > least)
+    edges = [start, *(a for _, a, _ in long_stretches[1:]), end]
+    return [(kind, a, b) for (kind, _, _), (a, b) in zip(long_stretches, pairwise(edges), strict=True)]
 
 
 def _join_equal_types(stretches: Iterable[TypeStretch]) -> list[TypeStretch]:
     """Return the stretches; those that follow each other with the same type are one."""
-    joined: list[TypeStretch] = []
+    longer: list[TypeStretch] = []
     for kind, a, b in stretches:
-        if joined and joined[-1][0] == kind:
-            joined[-1] = (kind, joined[-1][1], b)
+        if longer and longer[-1][0] == kind:
+            longer[-1] = (kind, longer[-1][1], b)
         else:
-            joined.append((kind, a, b))
-    return joined
+            longer.append((kind, a, b))
+    return longer

@@ -52,8 +52,8 @@ def signal_and_stop_line_rows(
 
 def _unique_rows(rows: Rows, key: tuple[str, ...]) -> Rows:
     """Return the rows ordered by their key, each once."""
-    found = {tuple("" if row[k] is None else row[k] for k in key): row for row in rows}
-    return [found[k] for k in sorted(found)]
+    row_by_key = {tuple("" if row[k] is None else row[k] for k in key): row for row in rows}
+    return [row_by_key[k] for k in sorted(row_by_key)]
 
 
 class _SignalReader:
@@ -122,8 +122,8 @@ class _SignalReader:
         """Return the columns of `traffic_signal` that a signal states, wherever it stands."""
         kind = _kind(signal)
         source = element_with_value(signal)
-        said = None if source is None or signal.get("id") in self.restricted_ids else source.get("value")
-        value = 0.0 if source is None or said in {None, "", "None"} else number_attribute(source, "value")
+        text = None if source is None or signal.get("id") in self.restricted_ids else source.get("value")
+        value = 0.0 if source is None or text in {None, "", "None"} else number_attribute(source, "value")
         return {
             "kind": kind, "country": (signal.get("country") or "").lower() or None,
             "type": signal.get("type"), "subtype": signal.get("subtype"),
@@ -185,9 +185,9 @@ class _SignalReader:
             message = f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): the lanes are used"
             self.quality.add("signal_orientation", "warning", None, message, len(self.contradictions))
         self._report_signs_of_unknown_codes()
-        placed = {row["signal_id"] for row in self.signals}
+        ids_with_lane = {row["signal_id"] for row in self.signals}
         for name, (road, signal) in self.defined.items():
-            if name not in placed and not is_crossed_out(signal):
+            if name not in ids_with_lane and not is_crossed_out(signal):
                 message = f"signal {name} of road {road.road_id} applies to no lane that vehicles drive on"
                 self.quality.add("signal_without_lane", "info", road.road_id, message)
 
@@ -200,8 +200,8 @@ class _SignalReader:
             and signal.get("type") not in {None, "", "-1", "none", *BOARD_TYPES} and not has_codes_of(signal.get("country", ""))
         })  # fmt: skip
         if codes:
-            named = name_list([escape_invisible(code[:40]) for code in codes])
-            message = f"signs with codes that are not known ({named}): whether a junction without another sign has one is not known"
+            names = name_list([escape_invisible(code[:40]) for code in codes])
+            message = f"signs with codes that are not known ({names}): whether a junction without another sign has one is not known"
             self.quality.add(SIGNS_UNMAPPED_CHECK, "info", None, message, len(codes))
 
 

@@ -93,12 +93,12 @@ def _sign_limit_rows(
         for row in signals
         if row["kind"] in LIMIT_BEGIN_KINDS or _may_be_limit(row)
     ]
-    seen: set[_SignStretch] = set()
+    finished: set[_SignStretch] = set()
     while todo:
         stretch = todo.pop()
-        if stretch in seen:
+        if stretch in finished:
             continue
-        seen.add(stretch)
+        finished.add(stretch)
         lane = by_id[stretch.lanelet_id]
         posted = min((s for s in posts.get(stretch.lanelet_id, ()) if s > stretch.start_m), default=None)
         end = lane.line.length if posted is None else posted
@@ -133,7 +133,7 @@ def _records_same_limit(before: Rows, behind: Rows) -> bool:
 def _uncovered_parts(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
     """Return the parts of a row that the spans of `covering_rows` do not cover."""
     parts, at = [], float(row["s_start_m"])
-    for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in covering_rows):
+    for start, end in sorted((float(covering["s_start_m"]), float(covering["s_end_m"])) for covering in covering_rows):
         if end <= at:
             continue
         parts.append((at, min(start, row["s_end_m"])))

@@ -20,9 +20,9 @@ def number_attribute(element: etree._Element, name: str, default: float | None =
     """Return an attribute as a finite number, or the default if it is absent."""
     if default is not None and name not in element.attrib:
         return default
-    said = required_attribute(element, name)
+    text = required_attribute(element, name)
     try:
-        value = float(said)
+        value = float(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -49,5 +49,5 @@ def required_attribute(element: etree._Element, name: str) -> str:
 
 
 def _attribute_place(element: etree._Element, name: str) -> str:
-    said = (element.get(name) or "")[:40]
-    return f"<{element.tag}> in line {element.sourceline}: {name}={said!r}"
+    text = (element.get(name) or "")[:40]
+    return f"<{element.tag}> in line {element.sourceline}: {name}={text!r}"

@@ -144,9 +144,9 @@ class Decoder:
             values = struct_field(base, vector)
             present = values.is_valid().to_numpy(zero_copy_only=False)
             for column, coordinate in columns.items():
-                numbers[column], said = _coordinate_and_presence(values, coordinate)
-                left_out[column] = present & ~said
-                not_finite |= said & np.isnan(numbers[column])
+                numbers[column], is_present = _coordinate_and_presence(values, coordinate)
+                left_out[column] = present & ~is_present
+                not_finite |= is_present & np.isnan(numbers[column])
                 says_zero = says_zero or bool((numbers[column] == 0.0).any())
             if vector in _NEVER_ZERO_VECTORS:
                 empty = np.logical_and.reduce([left_out[column] for column in columns])
@@ -157,12 +157,12 @@ class Decoder:
         codes = moving_object_codes(self._words, objects)
         nameless = frame[:0]
         if ids.null_count:
-            known = ids.is_valid().to_numpy(zero_copy_only=False)
-            nameless = frame[~known]
-            frame, number, not_finite = frame[known], number[known], not_finite[known]
-            numbers = {name: column[known] for name, column in numbers.items()}
-            left_out = {name: rows[known] for name, rows in left_out.items()}
-            codes = {name: column[known] for name, column in codes.items()}
+            has_id = ids.is_valid().to_numpy(zero_copy_only=False)
+            nameless = frame[~has_id]
+            frame, number, not_finite = frame[has_id], number[has_id], not_finite[has_id]
+            numbers = {name: column[has_id] for name, column in numbers.items()}
+            left_out = {name: rows[has_id] for name, rows in left_out.items()}
+            codes = {name: column[has_id] for name, column in codes.items()}
         return FrameBatch(
             np.where(timed, t_ns, outer_ns), timed | outer_timed,
             pc.coalesce(_host_vehicle_ids(truth), _host_vehicle_ids(message)).to_pylist(),
@@ -212,8 +212,8 @@ def read_first_message(data: bytes, message_type: str) -> FirstMessageFacts:
     if not (truth.lane or truth.logical_lane):
         return head
     lanes, beside = message_class("GroundTruth")(), message_class("GroundTruth")()
-    for each in _LANE_FIELDS:
-        getattr(lanes, each).extend(getattr(truth, each))
+    for field in _LANE_FIELDS:
+        getattr(lanes, field).extend(getattr(truth, field))
     beside.traffic_sign.extend(truth.traffic_sign)
     beside.traffic_light.extend(osi_heads.bulb_without_state(bulb, lights) for bulb in truth.traffic_light)
     beside.road_marking.extend(truth.road_marking)
@@ -251,9 +251,9 @@ def _struct_type_of_field(struct_type: pa.DataType | None, name: str) -> pa.Data
 def _coordinate_and_presence(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
     """Return a coordinate (NaN if missing or not finite), and for each row whether it is present."""
     values = struct_field(vector, name).cast(pa.float64())
-    said = values.is_valid().to_numpy(zero_copy_only=False)
+    is_present = values.is_valid().to_numpy(zero_copy_only=False)
     numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)
-    return np.where(np.isfinite(numbers), numbers, np.nan), said
+    return np.where(np.isfinite(numbers), numbers, np.nan), is_present
 
 
 def _times_ns_and_presence(message: pa.Array) -> tuple[NDArray[np.int64], Mask]:

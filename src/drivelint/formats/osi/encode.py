@@ -89,10 +89,12 @@ def moving_objects(
     """
     base = {}
     for vector, columns in COLUMNS_BY_VECTOR.items():
-        known = {column: np.isfinite(values[column]) | (column == "z_m" and log_has_heights) for column in columns}
-        must = [rows for column, rows in known.items() if column not in _OMISSIBLE_COORDINATES]
-        numbers = {name: pa.array(values[column], mask=~known[column]) for column, name in columns.items()}
-        base[vector] = _struct_array(numbers, np.logical_and.reduce([np.logical_or.reduce([*known.values()]), *must]))
+        is_known = {column: np.isfinite(values[column]) | (column == "z_m" and log_has_heights) for column in columns}
+        must = [rows for column, rows in is_known.items() if column not in _OMISSIBLE_COORDINATES]
+        numbers = {name: pa.array(values[column], mask=~is_known[column]) for column, name in columns.items()}
+        base[vector] = _struct_array(
+            numbers, np.logical_and.reduce([np.logical_or.reduce([*is_known.values()]), *must])
+        )
     lights = {
         field: pa.array(
             _codes_to_enum_numbers(codes[code], words, f"{_VEHICLE_LIGHT_STATE}.{enum}", names), mask=codes[code] < 0

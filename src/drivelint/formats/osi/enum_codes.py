@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes
     from drivelint.formats.protobuf.descriptors import SchemaTypes
 
-OFF, ON, OTHER = 0, 1, 2
+OFF, ON, OTHER_STATE = 0, 1, 2
 # one bit per state of a bulb; LIT means: lit in the bulb's colour
 RED, AMBER, GREEN, FLASHING, UNKNOWN, LIT = 1, 2, 4, 8, 16, 32
 _STATE_BY_LIT_BITS = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
@@ -34,7 +34,7 @@ _VEHICLE_CLASSES = {
     "MOTORBIKE": "motorcycle", "BICYCLE": "bicycle", "BUS": "bus", "WHEELCHAIR": "pedestrian", "STANDUP_SCOOTER": "bicycle",
 }  # fmt: skip
 _LAMP_CODES = {"OFF": OFF, "ON": ON} | dict.fromkeys(
-    ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER"), OTHER
+    ("OTHER", "FLASHING_BLUE", "FLASHING_BLUE_AND_RED", "FLASHING_AMBER"), OTHER_STATE
 )
 
 
@@ -67,11 +67,11 @@ class EnumCodes:
         self._tables = {}
         for attribute, (path, prefix, codes) in _ENUMERATIONS.items():
             names = enum_names(types, message_type, *path.split("."))
-            known = {f"{prefix}_{name}": code for name, code in codes.items()}
+            code_by_name = {f"{prefix}_{name}": code for name, code in codes.items()}
             table = np.full(max(names, default=0) + 2, -1, np.int8)
             for number, name in names.items():
                 if number >= 0:
-                    table[number] = known.get(name, -1)
+                    table[number] = code_by_name.get(name, -1)
             self._tables[attribute] = table
 
     def codes(self, attribute: str, numbers: pa.Array) -> Codes:
@@ -93,7 +93,7 @@ def moving_object_codes(enum_codes: EnumCodes, objects: pa.Array) -> dict[str, C
         "indicator": enum_codes.codes("indicator", struct_field(lights, "indicator_state")),
         "brake_light": enum_codes.codes("brake_light", struct_field(lights, "brake_light_state")),
         HEADLIGHTS: _headlight_codes(
-            *(enum_codes.codes("lamp", struct_field(lights, each)) for each in ("head_light", "high_beam"))
+            *(enum_codes.codes("lamp", struct_field(lights, lamp)) for lamp in ("head_light", "high_beam"))
         ),
     }
 
@@ -114,22 +114,24 @@ def bulb_state_rows(enum_codes: EnumCodes, truth: pa.Array, light_by_bulb: Mappi
     that is out of service is covered, crossed out or switched off: it is dark, whatever its colour and mode.
     """
     bulbs, frame = list_items_and_row_indices(truth, "traffic_light")
-    seen = struct_field(bulbs, "classification")
-    mode, color = (enum_codes.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
-    shown = np.where(mode == LIT, color, mode)
-    out_of_service = pc.fill_null(struct_field(seen, "is_out_of_service").cast(pa.bool_()), False)
-    shown = np.where(out_of_service.to_numpy(zero_copy_only=False), 0, shown)
-    bits = np.where(shown < 0, UNKNOWN, shown).astype(np.int8)
+    classification = struct_field(bulbs, "classification")
+    mode, color = (
+        enum_codes.codes(attribute, struct_field(classification, attribute)) for attribute in ("mode", "color")
+    )
+    light = np.where(mode == LIT, color, mode)
+    out_of_service = pc.fill_null(struct_field(classification, "is_out_of_service").cast(pa.bool_()), False)
+    light = np.where(out_of_service.to_numpy(zero_copy_only=False), 0, light)
+    bits = np.where(light < 0, UNKNOWN, light).astype(np.int8)
     return pa.table(
         {"frame": frame, "signal_id": pa.array(_signal_ids(bulbs, light_by_bulb), pa.string()), "bits": bits}
     )
 
 
 def _signal_ids(bulbs: pa.Array, light_by_bulb: Mapping[str, str]) -> list[str]:
-    own = integer_values(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
+    bulb_ids = integer_values(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
     references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
-    for number, sources in zip(own, references, strict=True):  # a loop is fast enough, because bulbs are few
+    for number, sources in zip(bulb_ids, references, strict=True):  # a loop is fast enough, because bulbs are few
         names = [
             s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
         ]

@@ -83,14 +83,14 @@ class _MapLanes:
     def assigned_lanes(self, classification: Any, base: Any) -> list[BoundedLane]:
         """Return the lanes to which a sign, light or marking is assigned; for a replaced physical lane, the logical lanes beside it."""
         by_id = {lane.lanelet_id: lane for lane in self.lanes}
-        names = [str(each.assigned_lane_id.value) for each in classification.logical_lane_assignment]
+        names = [str(assignment.assigned_lane_id.value) for assignment in classification.logical_lane_assignment]
         lanes = [by_id[name] for name in names if name in by_id]
         if lanes:
             return _distinct_lanes(lanes)
         for ref in classification.assigned_lane_id:
             if ref.value in self.logical_by_physical:
-                held = [by_id[str(name)] for name in self.logical_by_physical[ref.value] if str(name) in by_id]
-                lanes += _lanes_facing_object(base, self._lanes_beside(held, self.map_position(base)))
+                logical_lanes = [by_id[str(name)] for name in self.logical_by_physical[ref.value] if str(name) in by_id]
+                lanes += _lanes_facing_object(base, self._lanes_beside(logical_lanes, self.map_position(base)))
             elif str(ref.value) in by_id:
                 lanes.append(by_id[str(ref.value)])
         return _distinct_lanes(lanes)
@@ -119,8 +119,8 @@ def _lanes_facing_object(base: Any, lanes: list[BoundedLane]) -> list[BoundedLan
     normal = rotation_matrix(base)[:2, 0]
     if not (base.HasField("orientation") and np.hypot(*normal) >= _LEAST_CROSSING_SINE):
         return lanes
-    seen = [lane for lane in lanes if float(np.dot(normal, lane.line.tangent[-1])) < 0]
-    return seen or lanes
+    facing = [lane for lane in lanes if float(np.dot(normal, lane.line.tangent[-1])) < 0]
+    return facing or lanes
 
 
 def rotation_matrix(base: Any) -> Floats:
@@ -161,7 +161,7 @@ def _rows_of_sign(sign: Any, map_lanes: _MapLanes, quality: MapQuality) -> Itera
     lanes = map_lanes.assigned_lanes(classification, base)
     plates = [
         f"type {plate.type}"
-        for plate in (each.classification for each in sign.supplementary_sign)
+        for plate in (supplementary.classification for supplementary in sign.supplementary_sign)
         if plate.type != kinds.NO_PLATE_TYPE and not plate.is_out_of_service
     ]
     if plates and row["kind"] in KINDS_WITH_UNREAD_CONDITIONS:
@@ -174,8 +174,8 @@ def _bulbs_by_signal(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
     """Return signal id -> its bulbs that are in service. Signal ids are those of the log's signal states."""
     heads: dict[str, list[Any]] = {}
     for bulb in bulbs:
-        named = {ref.type: ref.identifier[0] for ref in reversed(bulb.source_reference) if ref.identifier}
-        name = named.get(OPEN_DRIVE_REFERENCE) or named.get(LIGHT_REFERENCE) or str(bulb.id.value)
+        reference_ids = {ref.type: ref.identifier[0] for ref in reversed(bulb.source_reference) if ref.identifier}
+        name = reference_ids.get(OPEN_DRIVE_REFERENCE) or reference_ids.get(LIGHT_REFERENCE) or str(bulb.id.value)
         if not bulb.classification.is_out_of_service:
             heads.setdefault(name, []).append(bulb)
     return heads
@@ -253,11 +253,11 @@ def _rows_of_stop_line(mark: Any, map_lanes: _MapLanes, quality: MapQuality) -> 
         if enough and abs(way[0] * tangent[1] - way[1] * tangent[0]) > _LEAST_CROSSING_SINE:
             across.append((lane, s, float(upwards @ tangent)))
     if lane_ids & {lane.lanelet_id for lane, _, _ in across}:
-        across = [each for each in across if each[0].lanelet_id in lane_ids]
+        across = [entry for entry in across if entry[0].lanelet_id in lane_ids]
     elif any(
         along > _LEAST_CROSSING_SINE for _, _, along in across
     ):  # a symbol is upright for the traffic to which it applies
-        across = [each for each in across if each[2] > 0]
+        across = [entry for entry in across if entry[2] > 0]
     name = str(mark.id.value)
     if not across:
         quality.add("stop_line_without_lane", "warning", None, f"stop line {name} lies across no lane for driving")

@@ -20,7 +20,7 @@ INTERSECTION_LANE_TYPE: Final = 4
 """The `Lane.Classification.Type` of an intersection."""
 CURB_LANE_TYPE: Final = 16
 """The `LogicalLane.Type` of a kerb."""
-INCREASING, DECREASING, BOTH = 2, 3, 4
+INCREASING, DECREASING, BOTH_WAYS = 2, 3, 4
 """Values of `LogicalLane.MoveDirection`: along the reference line, against it, both. With any other value it is unknown."""
 _MARKINGS: Final[dict[int, str]] = _words_by_number("markings")
 _UNKNOWN_BOUNDARY_TYPES: Final = frozenset({0, 1})  # UNKNOWN, OTHER

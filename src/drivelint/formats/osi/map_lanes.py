@@ -66,8 +66,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     for lane in lanes:
         lane.z = line_heights_closest_to_points(heights[lane.lanelet_id], lane.line.centre - request.offset)
     # the option takes precedence over the side that the lanes show
-    said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
-    side = choose_side([said], quality, "the lanes")
+    side_source = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
+    side = choose_side([side_source], quality, "the lanes")
     beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
     return map_from_bounds(source, request, lanes, beside, quality, map_format="osi", side_and_source=side)
 
@@ -85,11 +85,13 @@ def _logical_by_physical(
         shapely.Polygon(np.vstack([lane.left[:, :2], lane.right[::-1, :2]])).buffer(0.0) for lane in logical.values()
     ]
     tree = shapely.STRtree(areas)
-    for ref, drawn in physical.items():
+    for ref, physical_lane in physical.items():
         if ref in covers or not names:
             continue
-        s = stations(drawn.centre_line)
-        points = resampled(drawn.centre_line, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
+        s = stations(physical_lane.centre_line)
+        points = resampled(
+            physical_lane.centre_line, s, (np.arange(20) + 0.5) / 20 * s[-1]
+        )  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
         heights = [
             line_heights_closest_to_points(logical[names[a]].centre_line, points[[p], :2])[0]
@@ -110,5 +112,5 @@ def _why_no_driving_lane(truth: Any, quality: MapQuality) -> str:
     )
     if not reasons:
         return f"none of the {n} lanes in the log is a lane for driving"
-    reason, most = min(reasons.items(), key=lambda item: (-item[1], item[0]))
-    return f"none of the {n} lanes in the log is a lane for driving that can be built; {most} of them fail because {reason}: give --map"
+    reason, largest = min(reasons.items(), key=lambda item: (-item[1], item[0]))
+    return f"none of the {n} lanes in the log is a lane for driving that can be built; {largest} of them fail because {reason}: give --map"

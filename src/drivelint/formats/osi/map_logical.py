@@ -83,7 +83,7 @@ def bounded_lanes(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[Boun
         ]
         yield BoundedLane(
             str(name), lane.left[:, :2], lane.right[:, :2], kind, kind in kinds.DRIVABLE_LANE_KINDS,
-            bidirectional=kind in kinds.DRIVABLE_LANE_KINDS and lane.message.move_direction == kinds.BOTH,
+            bidirectional=kind in kinds.DRIVABLE_LANE_KINDS and lane.message.move_direction == kinds.BOTH_WAYS,
             junction_id=next((f"j{i}" for i in lane.physical_lane_ids if i in areas), None),
             successors=tuple(str(b) for a, b in linked if a == name),
             left_id=beside[0][0], left_against=beside[0][1], right_id=beside[1][0], right_against=beside[1][1],
@@ -94,9 +94,9 @@ def bounded_lanes(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[Boun
 
 def _logical_lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     """Return a lane in the direction of travel. Errors: `UnbuildableError` with the missing or invalid part."""
-    driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE_LANE_KINDS
+    is_drivable = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE_LANE_KINDS
     way = message.move_direction
-    if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
+    if is_drivable and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH_WAYS}:
         raise UnbuildableError("its move_direction does not state the direction of travel")
     left, right = (
         _side_points(message.left_boundary_id, bounds, "left"),
@@ -126,10 +126,10 @@ def _logical_lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
 def _side_points(boundary_ids: Iterable[Any], bounds: Mapping[int, Any], side: str) -> Floats:
     """Return the points (n, 4) of one side: x, y, z and s, which ascends. Errors: `UnbuildableError` for an invalid boundary."""
     names = [i.value for i in boundary_ids]
-    lost = [str(i) for i in names if i not in bounds]
-    if not names or lost:
+    absent = [str(i) for i in names if i not in bounds]
+    if not names or absent:
         raise UnbuildableError(
-            f"the log lacks its {side} boundary {', '.join(lost)}" if lost else f"it has no {side} boundary"
+            f"the log lacks its {side} boundary {', '.join(absent)}" if absent else f"it has no {side} boundary"
         )
     parts = []
     for name in names:
@@ -150,8 +150,8 @@ def _side_points(boundary_ids: Iterable[Any], bounds: Mapping[int, Any], side: s
 
 def _left_and_right_values(lane: LogicalLane, field: str) -> tuple[Any, Any]:
     """Return the values of `left_<field>` and `right_<field>` in the message, swapped if needed to the driver's left and right."""
-    both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
-    return both if lane.direction_sign > 0 else both[::-1]
+    values = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
+    return values if lane.direction_sign > 0 else values[::-1]
 
 
 def _lane_links(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
@@ -160,8 +160,8 @@ def _lane_links(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
         pair
         for name, lane in lanes.items()
         for field in ("predecessor_lane", "successor_lane")
-        for other in getattr(lane.message, field)
-        for pair in ((name, other.other_lane_id.value), (other.other_lane_id.value, name))
+        for connection in getattr(lane.message, field)
+        for pair in ((name, connection.other_lane_id.value), (connection.other_lane_id.value, name))
     }
     return sorted(
         (a, b) for a, b in stated_links if a in lanes and b in lanes and a != b and _leads_into(lanes[a], lanes[b])
@@ -195,9 +195,9 @@ def _neighbour_id_and_against(
     if lane.message.reference_line_id.value == neighbour.message.reference_line_id.value:
         against = lane.direction_sign != neighbour.direction_sign
     else:
-        ways = [each.centre_line[-1, :2] - each.centre_line[0, :2] for each in (lane, neighbour)]
+        ways = [side_lane.centre_line[-1, :2] - side_lane.centre_line[0, :2] for side_lane in (lane, neighbour)]
         against = float(np.dot(*ways)) < 0
-    return str(longest), against or neighbour.message.move_direction == kinds.BOTH
+    return str(longest), against or neighbour.message.move_direction == kinds.BOTH_WAYS
 
 
 def _markings_of_sides(
@@ -237,7 +237,7 @@ def _speed_limit_spans(lane: LogicalLane) -> Iterator[tuple[float, float, float]
         where = rule.traffic_rule_validity
         # the rule applies to all vehicles if it names no type, or only the type vehicle
         valid = where.valid_for_type
-        for_all = not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)
+        for_all = not valid or any(validity.type == 2 and not validity.HasField("vehicle_type") for validity in valid)
         if rule.traffic_rule_type or unit is None or limit_value.value <= 0 or not for_all:
             continue
         begin, end = sorted((lane.lane_fraction(where.start_s), lane.lane_fraction(where.end_s)))

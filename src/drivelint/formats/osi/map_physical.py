@@ -45,11 +45,13 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
     bounds = {b.id.value: b for b in truth.lane_boundary}
     directions = [lane.classification for lane in truth.lane if lane.classification.HasField(_DIRECTION_FIELD)]
     # if the flag is true or missing, and never false, the writer omits false
-    omits_false = {said.centerline_is_driving_direction for said in directions} == {True}
+    omits_false = {classification.centerline_is_driving_direction for classification in directions} == {True}
     lanes: dict[int, PhysicalLane] = {}
     for lane in truth.lane:
-        said = lane.classification
-        if said.type == kinds.INTERSECTION_LANE_TYPE and (len(said.lane_pairing) > 1 or len(said.centerline) < 2):
+        classification = lane.classification
+        if classification.type == kinds.INTERSECTION_LANE_TYPE and (
+            len(classification.lane_pairing) > 1 or len(classification.centerline) < 2
+        ):
             continue
         try:
             lanes[lane.id.value] = _physical_lane(lane, bounds, omits_false=omits_false)
@@ -149,10 +151,12 @@ def _side_along_centre_line(centre_line: Floats, points: Floats) -> Floats:
     # before the lane's start and after its end, only the nearest point belongs to the lane
     inside = (station > 1e-6) & (station < line.length - 1e-6)
     first, last = points[station <= 1e-6], points[station >= line.length - 1e-6]
-    kept = np.vstack([_nearest_point(first, centre_line[:1]), points[inside], _nearest_point(last, centre_line[-1:])])
-    if len(kept) < 2:
+    side_points = np.vstack(
+        [_nearest_point(first, centre_line[:1]), points[inside], _nearest_point(last, centre_line[-1:])]
+    )
+    if len(side_points) < 2:
         raise UnbuildableError("a boundary has fewer than two points beside it")
-    return _side_extended_to_lane_ends(kept, centre_line)
+    return _side_extended_to_lane_ends(side_points, centre_line)
 
 
 def _side_extended_to_lane_ends(side: Floats, centre_line: Floats) -> Floats:
@@ -165,9 +169,9 @@ def _side_extended_to_lane_ends(side: Floats, centre_line: Floats) -> Floats:
     line = shapely.LineString(centre_line)
     at = stations(centre_line)
     begin, end = (float(line.project(shapely.Point(p))) for p in (side[0], side[-1]))
-    missing = (at < begin - _LARGEST_MISSING_SIDE_M), (at > end + _LARGEST_MISSING_SIDE_M)
+    is_missing = (at < begin - _LARGEST_MISSING_SIDE_M), (at > end + _LARGEST_MISSING_SIDE_M)
     led = []
-    for beyond, point, station in zip(missing, (side[0], side[-1]), (begin, end), strict=True):
+    for beyond, point, station in zip(is_missing, (side[0], side[-1]), (begin, end), strict=True):
         k = int(np.argmin(np.abs(at - station)))
         led.append(centre_line[beyond] + left[beyond] * float(np.dot(point - centre_line[k], left[k])))
     return np.vstack([led[0], side, led[1]])
@@ -233,16 +237,26 @@ def _neighbour_id_and_against(
 ) -> tuple[str | None, bool | None]:
     for i in ids:
         if i.value in physical:
-            other = physical[i.value]
-            same = float(np.dot(*(each.centre_line[-1, :2] - each.centre_line[0, :2] for each in (lane, other)))) > 0
+            neighbour = physical[i.value]
+            same = (
+                float(
+                    np.dot(
+                        *(
+                            side_lane.centre_line[-1, :2] - side_lane.centre_line[0, :2]
+                            for side_lane in (lane, neighbour)
+                        )
+                    )
+                )
+                > 0
+            )
             return str(i.value), not same
     return None, None
 
 
 def _marking_of_side(boundary_ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
     """Return the marking of one side of a lane; None if it is unknown or changes along the lane."""
-    found = {bounds[i.value].classification.type for i in boundary_ids if i.value in bounds}
-    return kinds.combined_marking(sorted(found)) if len(found) == 1 else None
+    types = {bounds[i.value].classification.type for i in boundary_ids if i.value in bounds}
+    return kinds.combined_marking(sorted(types)) if len(types) == 1 else None
 
 
 def _leads_into(lane: PhysicalLane, next_lane: PhysicalLane) -> bool:
@@ -261,7 +275,7 @@ def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list
             if (
                 a is None
                 or b is None
-                or not all(_kind_and_is_drivable(each.message.classification)[1] for each in (a, b))
+                or not all(_kind_and_is_drivable(side_lane.message.classification)[1] for side_lane in (a, b))
             ):
                 continue  # the pair is not two lanes for driving
             sides = (a.left, b.left), (a.right, b.right)

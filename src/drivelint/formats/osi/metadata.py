@@ -138,10 +138,10 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
     Errors: `TraceError` for an unknown name or value, and for contradictions.
     """
     condition_words: dict[str, str] = {}
-    for given in rows:
-        if given[0] is None or given[1] is None:
+    for pair in rows:
+        if pair[0] is None or pair[1] is None:
             raise TraceError(f"{path}: a condition of the drive lacks its name or its value: give both")
-        name, word = conditions.canonical_spelling(given[0], given[1])
+        name, word = conditions.canonical_spelling(pair[0], pair[1])
         if wrong := conditions.condition_problem(name) or conditions.value_problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")
         if condition_words.setdefault(name, word) != word:
@@ -171,8 +171,8 @@ def _apply_trace_record(path: Path, facts: _TraceRecord, recording: Recording) -
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     # only these empty frames were in the original log; the conversion added frames for traffic lights
     recording.frames_ns = np.array(facts.nobody_ns, np.int64)
-    kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in CHECKS_REPEATED_AT_READING]
-    recording.findings += validated_findings(path, kept)
+    findings = [f for f in facts.quality if not facts.as_recorded or f.check_id not in CHECKS_REPEATED_AT_READING]
+    recording.findings += validated_findings(path, findings)
 
 
 def _apply_actor_records(path: Path, rows: Mapping[str, _ActorRecord], recording: Recording) -> None:
@@ -185,10 +185,10 @@ def _apply_actor_records(path: Path, rows: Mapping[str, _ActorRecord], recording
         if row.actor_class is not None and (wrong := vocabularies()["actor_class"].problem(row.actor_class)):
             raise TraceError(f"{path}: the metadata record {ACTORS_RECORD}: {wrong}")
     recording.states.ids = names
-    known = sorted(rows.values(), key=lambda row: row.actor_id)
+    records = sorted(rows.values(), key=lambda row: row.actor_id)
     columns = ("actor_id", "actor_class", *SIZE_COLUMNS, "is_ego")
-    recording.actors = pa.table({name: [getattr(row, name) for row in known] for name in columns})
-    recording.ego_ids = [row.actor_id for row in known if row.is_ego]
+    recording.actors = pa.table({name: [getattr(row, name) for row in records] for name in columns})
+    recording.ego_ids = [row.actor_id for row in records if row.is_ego]
 
 
 def _decode_record(path: Path, record_name: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:

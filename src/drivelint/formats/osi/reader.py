@@ -103,9 +103,9 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     if not batches:
         raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.cause})")
     recording = _recording("osi-mcap", batches, first_message, np.array(log_ns, np.uint64))
-    own, several = single_map_or_finding(maps)
+    own_map, several = single_map_or_finding(maps)
     if maps:
-        recording.embedded_map = own
+        recording.embedded_map = own_map
     recording.findings += [
         *container.findings,
         *unread.findings(),
@@ -121,7 +121,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
 def _refuse_converted_log_without_end(container: Container) -> None:
     """Raise `TraceError` for a log of `drivelint convert` whose end is lost, because the end contains all declared events."""
     if container.library == metadata.CONVERTED_LOG_LIBRARY and any(
-        each.until_ns is None for each in container.losses.lost_bytes
+        loss.until_ns is None for loss in container.losses.lost_bytes
     ):
         raise TraceError(
             f"{container.path}: the end of this converted log, with its declared events, is lost "
@@ -167,8 +167,8 @@ def _check_topics(container: Container, truth_topics: list[str], topic: str | No
     """Raise `TraceError` if there is no topic of ground truth, or several without a choice."""
     path, topics = container.path, ", ".join(sorted(truth_topics))
     if topic is not None and topic not in truth_topics:
-        found = f"ground truth is on {topics}" if truth_topics else _foreign_content_text(container)
-        raise TraceError(f"{path}: no OSI ground truth on topic {topic!r}: {found}")
+        content = f"ground truth is on {topics}" if truth_topics else _foreign_content_text(container)
+        raise TraceError(f"{path}: no OSI ground truth on topic {topic!r}: {content}")
     if not truth_topics:
         raise TraceError(f"{path}: no OSI ground truth in this file: {_foreign_content_text(container)}")
     if topic is None and len(truth_topics) > 1:
@@ -179,10 +179,10 @@ def _foreign_content_text(container: Container) -> str:
     """Return words for the content of an MCAP file without OSI messages: its message types, or topics without messages."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
-    needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
+    need = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
     if silent := silent_topics_text([container.path], FIELD_TREES.__contains__):
         return f"{silent}: record it again"
-    return f"it has {name_list(sorted(kinds)) if kinds else 'no channel'}; {needed}"
+    return f"it has {name_list(sorted(kinds)) if kinds else 'no channel'}; {need}"
 
 
 def read(probe: Probe) -> Recording:

@@ -42,10 +42,10 @@ def _file_descriptor(*schema_sections: str) -> descriptor_pb2.FileDescriptorProt
     declared = _declarations(*schema_sections)
     types: dict[str, Any] = {}
     for name in [*declared.messages, *declared.enums]:
-        outer, _, own = name.rpartition(".")
+        outer, _, own_name = name.rpartition(".")
         home = types[outer] if outer else file
         kind = "enum_type" if name in declared.enums else "nested_type" if outer else "message_type"
-        types[name] = getattr(home, kind).add(name=own)
+        types[name] = getattr(home, kind).add(name=own_name)
     for name, values in declared.enums.items():
         prefix = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", types[name].name).upper()
         for word, number in values:

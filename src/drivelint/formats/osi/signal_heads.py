@@ -29,7 +29,9 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
         refers = any(ref.type == OPEN_DRIVE_REFERENCE and ref.identifier for ref in bulb.source_reference)
         lanes = (
             tuple(sorted(i.value for i in classification.assigned_lane_id)),
-            tuple(sorted(each.assigned_lane_id.value for each in classification.logical_lane_assignment)),
+            tuple(
+                sorted(bulb_waiting.assigned_lane_id.value for bulb_waiting in classification.logical_lane_assignment)
+            ),
         )
         if not refers and bulb.base.HasField("position"):
             rows.setdefault((lanes, classification.icon), []).append(bulb)
@@ -39,9 +41,9 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
         while waiting:
             light = [waiting.pop(0)]
             for bulb in light:  # the list grows during the loop
-                near = [each for each in waiting if _are_adjacent_bulbs(bulb, each)]
+                near = [bulb_waiting for bulb_waiting in waiting if _are_adjacent_bulbs(bulb, bulb_waiting)]
                 light += near
-                waiting = [each for each in waiting if each not in near]
+                waiting = [bulb_waiting for bulb_waiting in waiting if bulb_waiting not in near]
             if len(light) > 1:
                 light_ids |= {str(bulb.id.value): str(light[0].id.value) for bulb in light}
     return light_ids

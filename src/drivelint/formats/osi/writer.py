@@ -123,20 +123,20 @@ def _objects_of_states(trace: Trace, osi_ids: dict[str, int]) -> pa.StructArray:
 
 
 def _codes_of_words(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
-    found = pc.index_in(column, value_set=pa.array(words, pa.string()))
-    return np.asarray(pc.fill_null(found, -1).to_numpy(), np.int8)
+    codes = pc.index_in(column, value_set=pa.array(words, pa.string()))
+    return np.asarray(pc.fill_null(codes, -1).to_numpy(), np.int8)
 
 
 def _encoded_lights_by_time(signals: pa.Table) -> dict[int, list[bytes]]:
     """Return time -> the encoded traffic lights of that frame."""
     place = {name: 2 * k + 1 for k, name in enumerate(sorted(set(signals["signal_id"].to_pylist())))}
-    t_ns, *said = (signals[name].to_pylist() for name in ("t_ns", "signal_id", "state"))
-    shown = list(zip(*said, strict=True))
+    t_ns, *columns = (signals[name].to_pylist() for name in ("t_ns", "signal_id", "state"))
+    lights = list(zip(*columns, strict=True))
     encoded = {
-        (name, state): encode_traffic_light(name, state, (place[name], place[name] + 1)) for name, state in set(shown)
+        (name, state): encode_traffic_light(name, state, (place[name], place[name] + 1)) for name, state in set(lights)
     }
     frames: dict[int, list[bytes]] = {}
-    for t, light in zip(t_ns, shown, strict=True):
+    for t, light in zip(t_ns, lights, strict=True):
         frames.setdefault(t, []).append(encoded[light])
     return frames
 

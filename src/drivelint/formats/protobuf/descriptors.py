@@ -46,9 +46,9 @@ class Declarations:
         self.messages: dict[str, list[list[str]]] = {}
         self.enums: dict[str, list[list[str]]] = {}
         for table in tables:
-            for known, more in ((self.messages, table["messages"]), (self.enums, table["enums"])):
+            for own_table, more in ((self.messages, table["messages"]), (self.enums, table["enums"])):
                 for name, items in more.items():
-                    known.setdefault(name, []).extend(item.split() for item in items)
+                    own_table.setdefault(name, []).extend(item.split() for item in items)
 
 
 def add_field(
@@ -60,12 +60,12 @@ def add_field(
     """
     name, number, kind = declaration
     plain = kind.removesuffix("[]")
-    added = message.field.add(name=name, number=int(number))
-    added.label = _FIELD.LABEL_REPEATED if kind != plain else _FIELD.LABEL_OPTIONAL
-    added.type = _SCALARS.get(plain, _FIELD.TYPE_ENUM if plain in enums else _FIELD.TYPE_MESSAGE)
+    new_field = message.field.add(name=name, number=int(number))
+    new_field.label = _FIELD.LABEL_REPEATED if kind != plain else _FIELD.LABEL_OPTIONAL
+    new_field.type = _SCALARS.get(plain, _FIELD.TYPE_ENUM if plain in enums else _FIELD.TYPE_MESSAGE)
     if plain not in _SCALARS:
-        added.type_name = f".{package}.{plain}"
-    return added
+        new_field.type_name = f".{package}.{plain}"
+    return new_field
 
 
 @dataclass
@@ -133,18 +133,18 @@ def _add_pruned_message(
     file: FileDescriptorProto, types: SchemaTypes, source_type: str, tree: FieldTree, name: str
 ) -> None:
     message = file.message_type.add(name=name)
-    known = {item.name: item for item in types.messages[source_type].field}
+    field_by_name = {item.name: item for item in types.messages[source_type].field}
     for field_name, subtree in tree.items():
-        item = known.get(field_name)
+        item = field_by_name.get(field_name)
         if item is None or (item.type == _FIELD.TYPE_MESSAGE) != (subtree is not None):
             continue
         label = _FIELD.LABEL_REPEATED if item.label == _FIELD.LABEL_REPEATED else _FIELD.LABEL_OPTIONAL
-        kept = message.field.add(name=field_name, number=item.number, label=label)
+        new_field = message.field.add(name=field_name, number=item.number, label=label)
         if subtree is None:
-            kept.type = _FIELD.TYPE_INT32 if item.type == _FIELD.TYPE_ENUM else item.type
+            new_field.type = _FIELD.TYPE_INT32 if item.type == _FIELD.TYPE_ENUM else item.type
         elif item.type_name in types.messages:
-            kept.type = _FIELD.TYPE_MESSAGE
-            kept.type_name = f".{PRUNED_PACKAGE}.{name}_{field_name}"
+            new_field.type = _FIELD.TYPE_MESSAGE
+            new_field.type_name = f".{PRUNED_PACKAGE}.{name}_{field_name}"
             _add_pruned_message(file, types, item.type_name, subtree, f"{name}_{field_name}")
         else:
             del message.field[-1]

@@ -251,8 +251,8 @@ class _MessageBatch:
         pieces = chain.from_iterable(
             (log_message.data, pad) for log_message, pad in zip(log_messages, pads, strict=True)
         )
-        joined = b"".join([b"\0" * HEADER_BYTES, *pieces, b"\0" * (2 * _MOST_ALIGNMENT_BYTES - HEADER_BYTES)])
-        self._bytes = np.frombuffer(joined, np.uint8)
+        content = b"".join([b"\0" * HEADER_BYTES, *pieces, b"\0" * (2 * _MOST_ALIGNMENT_BYTES - HEADER_BYTES)])
+        self._bytes = np.frombuffer(content, np.uint8)
         order = BYTE_ORDERS[log_messages[0].data[1]] if log_messages else "<"
         self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 

@@ -73,26 +73,28 @@ def ego_rows_or_reason(
     whose transforms give the times; transforms above that frame place it later. `box`, `option_ahead_m`: as for odometry.
     `ego_name`: the frame that the user chose; one that the log does not have is the id of another actor.
     """
-    found, ambiguous = _transforms_by_child(tables, static_suffix)
-    chosen = None if ego_name is None else clean_frame_name(ego_name)
+    transforms, ambiguous = _transforms_by_child(tables, static_suffix)
+    ego_frame = None if ego_name is None else clean_frame_name(ego_name)
     names = (
-        [chosen]
-        if chosen in found
-        else [name for last in EGO_FRAMES for name in sorted(found) if _name_without_prefix(name) == last]
+        [ego_frame]
+        if ego_frame in transforms
+        else [name for last in EGO_FRAMES for name in sorted(transforms) if _name_without_prefix(name) == last]
     )
     if not names:
-        seen = name_list(sorted(found), _MOST_LISTED_NAMES) or "none"
-        return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen}; --ego FRAME chooses one)"
+        child_frames = name_list(sorted(transforms), _MOST_LISTED_NAMES) or "none"
+        return (
+            f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {child_frames}; --ego FRAME chooses one)"
+        )
     frame = names[0]
     if sum(_name_without_prefix(name) == _name_without_prefix(frame) for name in names) > 1:
         return f"several frames may be the ego's, and --ego FRAME chooses one: {name_list(names, _MOST_LISTED_NAMES)}"
-    chain = _chain_or_reason(frame, found, ambiguous)
+    chain = _chain_or_reason(frame, transforms, ambiguous)
     if isinstance(chain, str):
         return chain
     moving = chain[-1]
     above = [moving.parent]
-    while above[-1] in found and found[above[-1]].parent not in above:
-        above.append(found[above[-1]].parent)
+    while above[-1] in transforms and transforms[above[-1]].parent not in above:
+        above.append(transforms[above[-1]].parent)
     if not {_name_without_prefix(name) for name in above} & set(FIXED_FRAME_NAMES):
         return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
     is_axle = bool(is_axle_frame(np.array([frame.encode()]))[0])
@@ -113,19 +115,21 @@ def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, m
         return rows
     frame = clean_frame_name(rows.frames[0].decode("utf-8", "replace"))
     t_ns = rows.t_ns
-    placed = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
-    if not len(placed):
+    placed_ns = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
+    if not len(placed_ns):
         return rows
     above = [transform for transform in frames.chain(frame, fixed) or () if not transform.static]
-    period_ns = max((float(np.median(np.diff(each.t_ns))) for each in above if len(each.t_ns) > 1), default=0.0)
+    period_ns = max(
+        (float(np.median(np.diff(transform.t_ns))) for transform in above if len(transform.t_ns) > 1), default=0.0
+    )
     most_ns = min(most_dropped_ns, MAX_INTERPOLATED_GAP_NS, _MOST_DROPPED_PERIODS_AT_EACH_END * period_ns)
-    first, last = placed.min(), placed.max()
-    kept = np.ones(len(rows), np.bool_)
+    first, last = placed_ns.min(), placed_ns.max()
+    is_kept = np.ones(len(rows), np.bool_)
     if first - t_ns.min() <= most_ns:
-        kept &= t_ns >= first
+        is_kept &= t_ns >= first
     if t_ns.max() - last <= most_ns:
-        kept &= t_ns <= last
-    return rows.take(kept)
+        is_kept &= t_ns <= last
+    return rows.take(is_kept)
 
 
 def _chain_or_reason(
@@ -152,14 +156,14 @@ def _chain_or_reason(
 def _ego_poses_of_chain(chain: list[_Transforms], centre: tuple[float, float, float]) -> RecordedPoses:
     moving = chain[-1]
     _, last = np.unique(moving.stamp_ns[::-1], return_index=True)  # relays repeat transforms
-    kept = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))
-    n = len(kept)
-    poses = Poses(*(column[kept] for column in moving.poses))
-    for each in reversed(chain[:-1]):
-        poses = poses.compose(Poses(*(np.repeat(column[-1:], n, axis=0) for column in each.poses)))
-    placed = poses.compose(Poses(np.tile(centre, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
+    rows = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))
+    n = len(rows)
+    poses = Poses(*(column[rows] for column in moving.poses))
+    for transform in reversed(chain[:-1]):
+        poses = poses.compose(Poses(*(np.repeat(column[-1:], n, axis=0) for column in transform.poses)))
+    centre_poses = poses.compose(Poses(np.tile(centre, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
     return recorded_poses(
-        (moving.stamp_ns[kept], moving.stamped[kept]), (placed.place, poses.turn), log_ns=moving.log_ns[kept],
+        (moving.stamp_ns[rows], moving.stamped[rows]), (centre_poses.place, poses.turn), log_ns=moving.log_ns[rows],
         ids=np.full(n, b"ego"), frames=np.full(n, moving.parent.encode()), classes=np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8),
     )  # fmt: skip
 
@@ -179,12 +183,12 @@ def _transforms_by_child(
             unit_quaternions(vectors(items, "transform.rotation", "xyzw")),
         )
         for child, parent, rows in rows_by_frames(items):
-            each = _Transforms(
+            transforms = _Transforms(
                 (topic,), parent, topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
                 log_ns[items.parent[rows]], Poses(places[rows], turns[rows]),
             )  # fmt: skip
-            parts.setdefault(child, []).append(each)
-    ambiguous = {child for child, of_child in parts.items() if len({each.parent for each in of_child}) > 1}
+            parts.setdefault(child, []).append(transforms)
+    ambiguous = {child for child, of_child in parts.items() if len({transforms.parent for transforms in of_child}) > 1}
     return {child: _join_batches(of_child) for child, of_child in parts.items()}, ambiguous
 
 

@@ -82,8 +82,8 @@ class Log:
                 if table is None:
                     continue
                 log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
-                read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
-                read.append(_batch_content(kind, decoder, table, log_ns))
+                batches = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
+                batches.append(_batch_content(kind, decoder, table, log_ns))
                 if kind in OBJECT_CONVERTERS or kind == ODOMETRY:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.has_carla_messages |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())

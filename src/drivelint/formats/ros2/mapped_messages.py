@@ -82,11 +82,11 @@ def read(probe: Probe) -> Recording:
         recordings.append(read_sheet(path, file.stem, message_mapping.table_mapping(topic), sheet))
     recording = recordings[0]
     _refuse_shared_ids(path, message_mapping, recordings)
-    recording.names_indicator = any(each.names_indicator for each in recordings)
-    for other in recordings[1:]:
-        recording.states = concatenate_states(*_with_same_columns(recording.states, other.states))
-        recording.findings += [each for each in other.findings if each not in recording.findings]
-        recording.lost_times += other.lost_times
+    recording.names_indicator = any(topic_recording.names_indicator for topic_recording in recordings)
+    for later in recordings[1:]:
+        recording.states = concatenate_states(*_with_same_columns(recording.states, later.states))
+        recording.findings += [finding for finding in later.findings if finding not in recording.findings]
+        recording.lost_times += later.lost_times
     if not len(recording.states):
         raise TraceError(
             f"{path}: no actor on {', '.join(topic.topic for topic in message_mapping.ros)}: nothing can be judged"
@@ -148,13 +148,15 @@ class _MappedMessages:
                 f"{self._path}: the times of {name_list(sorted(times))} do not overlap: name other fields with time"
             )
         self._refuse_different_frames()
-        missing = missing_message_findings(self._path, self._containers, lambda topic, _: topic in self._topics)
-        self.findings += missing
-        self.lost_times += [LostTime(None, None, each.message) for each in missing]
+        missing_messages = missing_message_findings(
+            self._path, self._containers, lambda topic, _: topic in self._topics
+        )
+        self.findings += missing_messages
+        self.lost_times += [LostTime(None, None, finding.message) for finding in missing_messages]
         for topic, t_ns in times.items():
-            others = [other_ns for other, other_ns in times.items() if other != topic]
-            if self._topics[topic].items is not None and others:
-                self.lost_times += silences(topic, t_ns, np.concatenate(others))
+            times_of_others = [other_ns for name, other_ns in times.items() if name != topic]
+            if self._topics[topic].items is not None and times_of_others:
+                self.lost_times += silences(topic, t_ns, np.concatenate(times_of_others))
 
     def _times(self, topic: str, table: Table) -> Times:
         """Return the times of a batch. Errors: `TraceError` if a message has none, or its unit is not known."""
@@ -192,8 +194,10 @@ class _MappedMessages:
     def table(self, topic: MappedTopic) -> pa.Table:
         """Return the rows of a topic. Errors: `TraceError` if the log has no message on it."""
         if topic.topic not in self._parts:
-            known = hint(topic.topic, bag.kinds_by_topic(self._path))
-            raise TraceError(f"{self._path}: no message on topic {topic.topic!r}, which the mapping names: {known}")
+            suggestion = hint(topic.topic, bag.kinds_by_topic(self._path))
+            raise TraceError(
+                f"{self._path}: no message on topic {topic.topic!r}, which the mapping names: {suggestion}"
+            )
         rows = [_batch_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]]
         try:
             return pa.concat_tables(rows, promote_options="default")
@@ -206,8 +210,8 @@ class _MappedMessages:
         """Return the fields of a topic's actors that the mapping does not name."""
         prefix = f"{topic.items}." if topic.items else ""
         of_actor = [name.removeprefix(prefix) for name in self._fields[topic.topic] if name.startswith(prefix)]
-        named = set(mappings.needed_columns(self._message_mapping.table_mapping(topic)))
-        return [name for name in of_actor if name not in named]
+        columns = set(mappings.needed_columns(self._message_mapping.table_mapping(topic)))
+        return [name for name in of_actor if name not in columns]
 
     def message_times(self) -> Times:
         """Return the times of all messages, also of those without actors."""
@@ -218,9 +222,9 @@ class _MappedMessages:
             text = definition_in_files(self._definitions, short_type_name(schema.name))
             schema = replace(schema, encoding="ros2msg", data=text.encode())
         if (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
-            what = f"{channel.message_encoding or 'none'} with definitions in {schema.encoding or 'no language'}"
+            encoding = f"{channel.message_encoding or 'none'} with definitions in {schema.encoding or 'no language'}"
             raise TraceError(
-                f"{file}: topic {channel.topic!r} ({schema.name}) is in {what}: a mapping reads cdr with ros2msg: set "
+                f"{file}: topic {channel.topic!r} ({schema.name}) is in {encoding}: a mapping reads cdr with ros2msg: set "
                 "message_files in the mapping, the folder of PACKAGE/msg/NAME.msg, or convert the log with ros2 bag convert "
                 "and storage_id: mcap where ROS and its packages are installed"
             )
@@ -233,8 +237,8 @@ class _MappedMessages:
     def _add_losses(self, container: Container) -> None:
         """Add the findings of a file; what it lost may be of any time, because its log times are not those of the messages."""
         self.findings += container.findings
-        for lost in container.losses.lost_times(container.path):
-            self.lost_times.append(lost._replace(since_ns=None, until_ns=None))
+        for lost_time in container.losses.lost_times(container.path):
+            self.lost_times.append(lost_time._replace(since_ns=None, until_ns=None))
 
 
 def _frame_field(topic: MappedTopic) -> str:
@@ -287,8 +291,8 @@ def _batch_rows(path: Path, topic: MappedTopic, table: Table, t_ns: Times) -> pa
     """Return the rows of a batch: numbers as they are, texts as strings; fields with several values have no column."""
     if topic.items is not None:
         if topic.items not in table.children:
-            known = hint(topic.items, table.children)
-            raise TraceError(f"{path}: a message on {topic.topic!r} has no list {topic.items!r} (items): {known}")
+            suggestion = hint(topic.items, table.children)
+            raise TraceError(f"{path}: a message on {topic.topic!r} has no list {topic.items!r} (items): {suggestion}")
         table, t_ns = table.children[topic.items], t_ns[table.children[topic.items].parent]
     columns = {name: _arrow_column(values) for name, values in table.columns.items() if values.ndim == 1}
     return pa.table({**columns, topic_mapping.TIME_COLUMN: t_ns})
@@ -296,15 +300,15 @@ def _batch_rows(path: Path, topic: MappedTopic, table: Table, t_ns: Times) -> pa
 
 def _arrow_column(values: NDArray[Any]) -> pa.Array:
     if values.dtype.kind == "S":
-        return pa.array([each.decode("utf-8", "backslashreplace") for each in values.tolist()], pa.string())
+        return pa.array([text.decode("utf-8", "backslashreplace") for text in values.tolist()], pa.string())
     return pa.array(values.astype(values.dtype.newbyteorder("=")))
 
 
 def _with_same_columns(first: States, second: States) -> tuple[States, States]:
     """Return both with all columns of either; what one lacks is unknown."""
-    for states, other in ((first, second), (second, first)):
-        for name in other.numbers.keys() - states.numbers.keys():
+    for states, counterpart in ((first, second), (second, first)):
+        for name in counterpart.numbers.keys() - states.numbers.keys():
             states.numbers[name] = np.full(len(states), np.nan)
-        for name in other.codes.keys() - states.codes.keys():
+        for name in counterpart.codes.keys() - states.codes.keys():
             states.codes[name] = np.full(len(states), -1, np.int8)
     return first, second

@@ -72,10 +72,10 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
         findings.append(QualityFinding("ego_twice", "info", message, len(ego)))
         return Recording(FORMAT, object_states, ego_ids=[name], findings=findings)
     for size in SIZE_COLUMNS:
-        known = np.sort(object_states.numbers[size][twin])
-        known = known[known > 0.0]
-        if len(known):
-            ego.numbers[size][:] = known[(len(known) - 1) // 2]
+        sizes = np.sort(object_states.numbers[size][twin])
+        sizes = sizes[sizes > 0.0]
+        if len(sizes):
+            ego.numbers[size][:] = sizes[(len(sizes) - 1) // 2]
     kinds = object_states.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
@@ -88,8 +88,8 @@ def concatenate_states(first: States, second: States) -> States:
     """Return the rows of both sets of states; actors with the same id become one actor."""
     ids = list(dict.fromkeys([*first.ids, *second.ids]))
     place = {name: i for i, name in enumerate(ids)}
-    moved = np.array([place[name] for name in second.ids], np.int32)
-    return States.concatenate([replace(first, ids=ids), replace(second, ids=ids, actor=moved[second.actor])])
+    new_index = np.array([place[name] for name in second.ids], np.int32)
+    return States.concatenate([replace(first, ids=ids), replace(second, ids=ids, actor=new_index[second.actor])])
 
 
 def _unused_actor_id(name: str, ids: list[str]) -> str:

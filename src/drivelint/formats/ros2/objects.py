@@ -49,8 +49,8 @@ _CLASS_BY_WORD: Final = {
 
 def class_code(word: str) -> int:
     """Return the index in `ACTOR_CLASSES` of a word such as `Car`, `vehicle.car` or `PERSON`; -1 if the word is unknown."""
-    known = _CLASS_BY_WORD.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
-    return _UNKNOWN if known is None else ACTOR_CLASSES.index(known)
+    actor_class = _CLASS_BY_WORD.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
+    return _UNKNOWN if actor_class is None else ACTOR_CLASSES.index(actor_class)
 
 
 def stamps(table: Table, path: str) -> tuple[Times, Mask]:
@@ -72,10 +72,10 @@ def stamps(table: Table, path: str) -> tuple[Times, Mask]:
 
 def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
     """Return vectors with one column per axis; NaN for axes that the definition does not have."""
-    missing = np.full(table.n, np.nan)
+    unknown = np.full(table.n, np.nan)
     return np.stack(
         [
-            table.columns.get(f"{path}.{axis}" if path else axis, missing).astype(np.float64, copy=False)
+            table.columns.get(f"{path}.{axis}" if path else axis, unknown).astype(np.float64, copy=False)
             for axis in axes
         ],
         axis=1,
@@ -89,9 +89,9 @@ def _rows_of_items(top: Table, items: Table, ids: NDArray[Any], frame: str | Non
     """
     stamp_ns, stamped = stamps(top, "header.stamp")
     frames = top.columns.get("header.frame_id", np.zeros(top.n, "S1"))[items.parent]
-    own = items.columns.get(frame) if frame is not None else None
-    if own is not None:
-        frames = np.where(own == b"", frames, own)
+    own_frames = items.columns.get(frame) if frame is not None else None
+    if own_frames is not None:
+        frames = np.where(own_frames == b"", frames, own_frames)
     poses = vectors(items, f"{pose}.position"), vectors(items, f"{pose}.orientation", "xyzw")
     times = stamp_ns[items.parent], stamped[items.parent]
     return recorded_poses(times, poses, log_ns=items.parent.astype(np.int64), ids=ids, frames=frames)
@@ -127,10 +127,10 @@ def _autoware_rows(top: Table, prefix: str = "") -> RecordedPoses:
     rows.classes = _codes_of_numbers(
         _AUTOWARE_CODES, _likeliest_labels(items, "classification", "label", "probability", 0)
     )
-    said = items.columns.get("kinematics.orientation_availability")
-    if said is not None:
-        rows.turn[said == _NO_ORIENTATION] = np.nan
-        rows.faces = said != _EITHER_WAY
+    availability = items.columns.get("kinematics.orientation_availability")
+    if availability is not None:
+        rows.turn[availability == _NO_ORIENTATION] = np.nan
+        rows.faces = availability != _EITHER_WAY
     return rows
 
 
@@ -169,8 +169,8 @@ def _vision_rows(top: Table) -> RecordedPoses:
     key = next((c for c in ("hypothesis.class_id", "id") if c in results.columns), None)
     score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
-        words, which = distinct_values(_likeliest_labels(items, "results", key, score, b""))
-        rows.classes = np.array([class_code(each) for each in words], np.int8)[which]
+        words, word_index = distinct_values(_likeliest_labels(items, "results", key, score, b""))
+        rows.classes = np.array([class_code(word) for word in words], np.int8)[word_index]
     return rows
 
 

@@ -124,9 +124,9 @@ def read(path: Path, options: IngestOptions) -> Recording:
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
         if ego in all_states.ids and reports.keys() & {TURN_INDICATORS, HAZARD_LIGHTS}:
-            mine = all_states.actor == all_states.ids.index(ego)
+            of_ego = all_states.actor == all_states.ids.index(ego)
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
-            all_states.codes["indicator"][mine] = ros_ego.indicator_codes(all_states.t_ns[mine], reports)
+            all_states.codes["indicator"][of_ego] = ros_ego.indicator_codes(all_states.t_ns[of_ego], reports)
         recording.events = ros_ego.engagement_events(reports, ego)
     _add_signals(recording, log, own_times=own_times)
     recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
@@ -198,11 +198,11 @@ def _ego_poses_by_topic_and_has_centre(log: Log, options: IngestOptions) -> tupl
 
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.
     """
-    box, found = vehicle_box(
+    box, box_findings = vehicle_box(
         (table for _, (table, _) in log.batches(PARAMETER_EVENTS)),
         ((topic, table) for topic, (table, _) in log.batches(VEHICLE_DIMENSIONS)),
     )
-    log.findings += found
+    log.findings += box_findings
     ahead_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
     rows: dict[str, RecordedPoses] = {}
     has_box_centre = False
@@ -224,23 +224,23 @@ def _ego_poses_by_transforms_and_has_centre(
     log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
 ) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by the transforms of its frame, if a chain leads to it, and whether the box gave their centres."""
-    found = ego_rows_or_reason(_transforms(log), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
-    if isinstance(found, str):
-        log.why_no_ego = "; ".join([found, *log.undefined_ego.texts()])
+    ego_rows = ego_rows_or_reason(_transforms(log), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
+    if isinstance(ego_rows, str):
+        log.why_no_ego = "; ".join([ego_rows, *log.undefined_ego.texts()])
         return {}, False
-    log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
-    log.add_times(found.topic, found.rows)
-    log.ego_frame = found.frame
-    return {found.topic: found.rows}, found.has_box_centre
+    log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {ego_rows.frame!r} on {ego_rows.topic}")
+    log.add_times(ego_rows.topic, ego_rows.rows)
+    log.ego_frame = ego_rows.frame
+    return {ego_rows.topic: ego_rows.rows}, ego_rows.has_box_centre
 
 
 def _centre_mismatch_findings(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
-    said = box.centre[0]
-    if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_UNREPORTED_SIZE_DIFFERENCE_M:
+    centre_m = box.centre[0]
+    if ahead_m == 0.0 or abs(ahead_m - centre_m) <= MOST_UNREPORTED_SIZE_DIFFERENCE_M:
         return []
     message = (
         f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states "
-        f"{said:g} m: the value of the log is used"
+        f"{centre_m:g} m: the value of the log is used"
     )
     return [QualityFinding("ego_size", "warning", message)]
 

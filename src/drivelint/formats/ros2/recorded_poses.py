@@ -76,15 +76,15 @@ class RecordedPoses:
 
     def take(self, rows: Indices | Mask) -> RecordedPoses:
         """Return only the given rows."""
-        chosen: dict[str, Any] = {name: None if v is None else v[rows] for name, v in vars(self).items()}
-        return RecordedPoses(**chosen)
+        columns: dict[str, Any] = {name: None if v is None else v[rows] for name, v in vars(self).items()}
+        return RecordedPoses(**columns)
 
 
 def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
     """Return the rows of all batches, concatenated."""
     lists = {name: [vars(part)[name] for part in parts] for name in vars(parts[0])}
-    joined: dict[str, Any] = {name: None if v[0] is None else np.concatenate(v) for name, v in lists.items()}
-    return RecordedPoses(**joined)
+    columns: dict[str, Any] = {name: None if v[0] is None else np.concatenate(v) for name, v in lists.items()}
+    return RecordedPoses(**columns)
 
 
 def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], **columns: Any) -> RecordedPoses:
@@ -135,20 +135,20 @@ def states_in_fixed_frame(
     velocity, swapped = np.where(along, outward, rows.velocity), np.where(along, rows.velocity, outward)
     acceleration = np.where(along, rotated(turn, rows.acceleration), rows.acceleration)
     findings: list[QualityFinding] = []
-    names, which = distinct_values(rows.frames)
+    names, frame_index = distinct_values(rows.frames)
     at_ns = rows.t_ns if rows.at_ns is None else rows.at_ns
     for i, frame in enumerate(map(clean_frame_name, names)):
         if frame == fixed:
             continue
-        here = np.flatnonzero(which == i)
+        here = np.flatnonzero(frame_index == i)
         outer = frames.frame_poses(fixed, frame, at_ns[here])
         inner = outer.compose(Poses(place[here], turn[here]))
         place[here], turn[here] = inner.place, inner.turn
         for vectors in (velocity, acceleration, swapped):
             vectors[here] = rotated(outer.turn, vectors[here])
-        lost = np.isnan(outer.place[:, 0])
-        if lost.any():
-            findings.append(_unresolved_frame_finding(topic, frame, fixed, frames, rows.t_ns[here[lost]]))
+        is_lost = np.isnan(outer.place[:, 0])
+        if is_lost.any():
+            findings.append(_unresolved_frame_finding(topic, frame, fixed, frames, rows.t_ns[here[is_lost]]))
     states = States(
         ids,
         actor,
@@ -190,9 +190,9 @@ def _correct_velocity_frame(states: States, swapped: Vectors, along: Mask, topic
     fast = np.bincount(
         states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > LEAST_MOVING_MPS], minlength=len(states.ids)
     )
-    chosen = np.zeros(len(states.ids), np.bool_)
-    chosen[np.argsort(-fast, kind="stable")[:MOST_SAMPLED_ACTORS]] = True
-    some = np.flatnonzero(chosen[states.actor])
+    is_sampled = np.zeros(len(states.ids), np.bool_)
+    is_sampled[np.argsort(-fast, kind="stable")[:MOST_SAMPLED_ACTORS]] = True
+    some = np.flatnonzero(is_sampled[states.actor])
     order = some[np.lexsort((states.t_ns[some], states.actor[some]))]
     track = states.take(order)
     if len(track) < MIN_SAMPLES:
@@ -201,19 +201,19 @@ def _correct_velocity_frame(states: States, swapped: Vectors, along: Mask, topic
     dx, dy = time_derivative(track.numbers["x_m"], step), time_derivative(track.numbers["y_m"], step)
     moving = np.hypot(dx, dy) > LEAST_MOVING_MPS
     wrong = np.hypot(track.numbers["vx_mps"] - dx, track.numbers["vy_mps"] - dy)[moving]
-    other = np.hypot(swapped[order, 0] - dx, swapped[order, 1] - dy)[moving]
-    known = np.isfinite(wrong) & np.isfinite(other)
-    if int(known.sum()) < MIN_SAMPLES:
+    right = np.hypot(swapped[order, 0] - dx, swapped[order, 1] - dy)[moving]
+    is_known = np.isfinite(wrong) & np.isfinite(right)
+    if int(is_known.sum()) < MIN_SAMPLES:
         return []
-    off, fit = float(np.median(wrong[known])), float(np.median(other[known]))
+    off, fit = float(np.median(wrong[is_known])), float(np.median(right[is_known]))
     if fit > MAX_FIT_ERROR_MPS or off < max(FIT_RATIO * fit, MAX_FIT_ERROR_MPS):
         return []
     states.numbers["vx_mps"] = np.where(np.isfinite(swapped[:, 0]), swapped[:, 0], vx)
     states.numbers["vy_mps"] = np.where(np.isfinite(swapped[:, 1]), swapped[:, 1], vy)
     ways = ("along the actor's axes", "in the frame of the positions")
-    given, is_ = ways if bool(along[0]) else reversed(ways)
+    due, is_ = ways if bool(along[0]) else reversed(ways)
     message = (
-        f"{topic}: velocities should be {given}, but then differ from the changes of position by {off:.2f} m/s "
+        f"{topic}: velocities should be {due}, but then differ from the changes of position by {off:.2f} m/s "
         f"(median); {is_} they differ by {fit:.2f} m/s, and are read in this way"
     )
     return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
@@ -230,9 +230,9 @@ def set_times_and_return_are_own_times(parts: dict[str, RecordedPoses], findings
         if not len(rows):
             continue
         # 0 can be the start of a simulation's clock; but if other stamps are in UTC, 0 means that there is no time
-        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= EARLIEST_UTC_NS))
-        if missing.any():
-            why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
+        lacks_stamp = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= EARLIEST_UTC_NS))
+        if lacks_stamp.any():
+            why = f"{topic}: {int(lacks_stamp.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
             why = f"the time stamps of {topic} do not advance"
         else:
@@ -272,7 +272,7 @@ def ids_at_ego(ego: States, object_states: States) -> list[str]:
         x = np.interp(object_states.t_ns, times, ego.numbers["x_m"][first], left=np.nan, right=np.nan)
         y = np.interp(object_states.t_ns, times, ego.numbers["y_m"][first], left=np.nan, right=np.nan)
         off = np.hypot(object_states.numbers["x_m"] - x, object_states.numbers["y_m"] - y)
-    known = np.isfinite(off)
-    n = np.bincount(object_states.actor[known], minlength=len(object_states.ids))
-    near = np.bincount(object_states.actor[known & (off < 0.5)], minlength=len(object_states.ids))
+    is_known = np.isfinite(off)
+    n = np.bincount(object_states.actor[is_known], minlength=len(object_states.ids))
+    near = np.bincount(object_states.actor[is_known & (off < 0.5)], minlength=len(object_states.ids))
     return [object_states.ids[i] for i in np.flatnonzero((n >= 2) & (near >= 0.95 * n))]

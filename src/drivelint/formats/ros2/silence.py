@@ -25,16 +25,16 @@ def silences(topic: str, sent_ns: Times, odometry_ns: Times) -> list[LostTime]:
 
     `sent_ns`, `odometry_ns`: log times of the topic's and of the odometry's messages.
     """
-    sent, others = np.unique(sent_ns), np.sort(odometry_ns)
-    if len(sent) < 2 or not len(others):
+    sent, continuing = np.unique(sent_ns), np.sort(odometry_ns)
+    if len(sent) < 2 or not len(continuing):
         return []
     least = max(int(MAX_GAP_PERIODS * np.median(np.diff(sent))), LEAST_SILENCE_NS)
-    edges = np.r_[min(sent[0], others[0]), sent, max(sent[-1], others[-1])]
-    goes_on = np.searchsorted(others, edges[1:]) - np.searchsorted(others, edges[:-1], side="right") > 1
+    edges = np.r_[min(sent[0], continuing[0]), sent, max(sent[-1], continuing[-1])]
+    goes_on = np.searchsorted(continuing, edges[1:]) - np.searchsorted(continuing, edges[:-1], side="right") > 1
     silent = np.flatnonzero((np.diff(edges) > least) & goes_on)
     begins, ends = (edges[side].tolist() for side in (silent, silent + 1))
-    what = f"{topic} has no messages while the odometry continues"
+    cause = f"{topic} has no messages while the odometry continues"
     return [
-        LostTime(None if k == 0 else since, None if k == len(sent) else until, what)
+        LostTime(None if k == 0 else since, None if k == len(sent) else until, cause)
         for k, since, until in zip(silent.tolist(), begins, ends, strict=True)
     ]

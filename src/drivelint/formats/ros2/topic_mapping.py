@@ -88,7 +88,7 @@ def load(path: Path) -> RosMappingFile:
         message_mapping = msgspec.convert(raw, RosMappingFile)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
-    topics = [each.topic for each in message_mapping.ros]
+    topics = [entry.topic for entry in message_mapping.ros]
     if not topics or len(set(topics)) < len(topics):
         raise UsageError(f"mapping {path}: each [[ros]] needs a topic of its own")
     for topic in message_mapping.ros:

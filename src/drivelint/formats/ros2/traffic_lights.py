@@ -63,8 +63,8 @@ def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[st
 
 
 def _light_element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
-    needed = {*_COLOURS, "CIRCLE", "SOLID_OFF", "SOLID_ON", "FLASHING"}
-    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), LIGHT_ELEMENT_NUMBERS)
+    names = {*_COLOURS, "CIRCLE", "SOLID_OFF", "SOLID_ON", "FLASHING"}
+    return next((numbers for numbers in constants.values() if numbers.keys() >= names), LIGHT_ELEMENT_NUMBERS)
 
 
 def _states_of_groups(groups: Table, number: Mapping[str, int]) -> Codes:
@@ -76,8 +76,8 @@ def _states_of_groups(groups: Table, number: Mapping[str, int]) -> Codes:
     bits = np.zeros(elements.n, np.int64)
     for k, name in enumerate(_COLOURS):
         of_color = color == number[name]
-        for which, bit in ((full & lit, _LIT_RED_BIT), (full & dark, _DARK_RED_BIT), (arrow & lit, _ARROW_RED_BIT)):
-            bits[of_color & which] |= bit << k
+        for is_so, bit in ((full & lit, _LIT_RED_BIT), (full & dark, _DARK_RED_BIT), (arrow & lit, _ARROW_RED_BIT)):
+            bits[of_color & is_so] |= bit << k
     bits[full & flashing & np.isin(color, [number[name] for name in _COLOURS])] |= _FLASHING_BIT
     # any other element: another colour, shape or status, an unknown value, or a flashing arrow
     bits[(bits == 0) & ~(dark & (full | arrow))] = _DOUBT_BIT

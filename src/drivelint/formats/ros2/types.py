@@ -96,21 +96,21 @@ def integer_constants(path: Path, name: str, text: bytes) -> dict[str, dict[str,
     def make_error(problem: str) -> TraceError:
         return TraceError(f"{path}: the definition of {name} in the log {problem}")
 
-    found: dict[str, dict[str, int]] = {}
+    constants: dict[str, dict[str, int]] = {}
     for title, body in _sections(name, text, make_error):
         lines = (_CONSTANT_PATTERN.match(line.split("#")[0].strip()) for line in body.splitlines())
-        found[title] = {match["name"]: int(match["value"]) for match in lines if match is not None}
-    return found
+        constants[title] = {match["name"]: int(match["value"]) for match in lines if match is not None}
+    return constants
 
 
 def _sections(name: str, text: bytes, make_error: MakeError) -> list[tuple[str, str]]:
     """Return the full name and the text of each message in a definition, `name` first."""
     try:
-        first, *others = _SEPARATOR_PATTERN.split(text.decode())
+        first, *rest = _SEPARATOR_PATTERN.split(text.decode())
     except UnicodeDecodeError as error:
         raise make_error(f"is not text ({error}): record it again") from error
     sections = [(short_type_name(name), first)]
-    for section in others:
+    for section in rest:
         title, _, body = section.lstrip().partition("\n")
         if not title.startswith("MSG:"):
             raise make_error(_NOT_UNDERSTOOD_TEXT.format(title[:80]))

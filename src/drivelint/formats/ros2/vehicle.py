@@ -69,8 +69,12 @@ def vehicle_box(
     `parameters`: parameter events of nodes; `dimensions`: topic and messages of recorded dimensions. Lengths of several nodes are not
     combined into a box, because the nodes may mean different vehicles.
     """
-    said = {**_lengths_by_node(parameters), **_lengths_by_topic(dimensions)}
-    boxes = [box for source, lengths in sorted(said.items()) if (box := _box_of_lengths(source, lengths)) is not None]
+    lengths_by_source = {**_lengths_by_node(parameters), **_lengths_by_topic(dimensions)}
+    boxes = [
+        box
+        for source, lengths in sorted(lengths_by_source.items())
+        if (box := _box_of_lengths(source, lengths)) is not None
+    ]
     if not boxes:
         return None, []
     measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
@@ -95,21 +99,21 @@ def _lengths_by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]
 def _length_parameters(items: Table) -> Iterator[tuple[int, str, float]]:
     """Yield row, name and value of each parameter that is a length of the vehicle."""
     names, kind = items.column("name"), items.column("value.type")
-    wanted = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTH_NAMES, _HEIGHT_NAME)]) & np.isin(
+    is_length = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTH_NAMES, _HEIGHT_NAME)]) & np.isin(
         kind, (_WHOLE, _DOUBLE)
     )
-    for i in np.flatnonzero(wanted).tolist():
+    for i in np.flatnonzero(is_length).tolist():
         column = "value.double_value" if kind[i] == _DOUBLE else "value.integer_value"
         yield i, names[i].decode(), float(items.column(column)[i])
 
 
 def _lengths_by_topic(dimensions: Iterable[tuple[str, Table]]) -> dict[str, dict[str, float]]:
-    found: dict[str, dict[str, float]] = {}
+    lengths: dict[str, dict[str, float]] = {}
     for topic, table in dimensions:
         if table.n:
-            found[topic] = {name: float(table.column(name)[-1]) for name in VEHICLE_LENGTH_NAMES}
-            found[topic][_HEIGHT_NAME] = float(table.columns.get("height", np.full(table.n, nan))[-1])
-    return found
+            lengths[topic] = {name: float(table.column(name)[-1]) for name in VEHICLE_LENGTH_NAMES}
+            lengths[topic][_HEIGHT_NAME] = float(table.columns.get("height", np.full(table.n, nan))[-1])
+    return lengths
 
 
 def _box_of_lengths(source: str, lengths: Mapping[str, float]) -> VehicleBox | None:

@@ -191,13 +191,13 @@ def _measure_to_named_lines(lane: CentreLine, lines: Mapping[str, shapely.LineSt
 
 def named_boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
     """Yield for each boundary that a lane names its side (0 left, 1 right), the points (n,) that it lies beside, and its id."""
-    own = point_array(lane.feature["polyline"], "polyline")
-    own_s = stations(own)
+    line = point_array(lane.feature["polyline"], "polyline")
+    line_s = stations(line)
     for side, key in enumerate(("left_boundaries", "right_boundaries")):
         spans = lane.feature.get(key)
         for span in spans if isinstance(spans, (list, tuple)) else ():
             try:
-                first, last = (own_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
+                first, last = (line_s[int(span[f"lane_{end}_index"])] for end in ("start", "end"))
                 name = str(span["boundary_feature_id"])
             except (KeyError, ValueError, TypeError, IndexError, OverflowError):
                 continue
@@ -259,12 +259,12 @@ def fill_unknown_bound_distances_and_return_filled_shares(lanes: Mapping[str, Ce
     unknown = {name: float(np.isnan(lane.bound_distances).mean()) for name, lane in lanes.items()}
     for _ in range(2):  # twice: the joined lane may itself get its width only in the first pass
         for lane in lanes.values():
-            for end, joined, theirs in ((0, lane.predecessors, -1), (-1, lane.successors, 0)):
-                known = [lanes[name].bound_distances[theirs] for name in joined if name in lanes]
-                known = [half for half in known if np.isfinite(half).all()]
-                if known:
+            for end, linked_lanes, linked_end in ((0, lane.predecessors, -1), (-1, lane.successors, 0)):
+                distances = [lanes[name].bound_distances[linked_end] for name in linked_lanes if name in lanes]
+                distances = [half for half in distances if np.isfinite(half).all()]
+                if distances:
                     lane.bound_distances[end] = np.where(
-                        np.isnan(lane.bound_distances[end]), np.mean(known, axis=0), lane.bound_distances[end]
+                        np.isnan(lane.bound_distances[end]), np.mean(distances, axis=0), lane.bound_distances[end]
                     )
     for lane in lanes.values():
         for side in (0, 1):

@@ -93,9 +93,9 @@ def _first_step_after_message_stream(place: Floats, usual_step_m: Floats, moving
     step = np.diff(place, axis=0)
     ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
     short = (step[1:] * ahead).sum(axis=1) < _SHORT_STEP_SHARE * usual_step_m[1:]
-    found = np.flatnonzero(short & moving[1:]) + 2
-    found = found[found > n - 1 - _EXAMINED_LAST_STEPS]
-    return int(found[0]) if len(found) else n
+    starts = np.flatnonzero(short & moving[1:]) + 2
+    starts = starts[starts > n - 1 - _EXAMINED_LAST_STEPS]
+    return int(starts[0]) if len(starts) else n
 
 
 def _time_nearest_to_point(point: Floats, place: Floats, t_s: Floats) -> float:

@@ -64,10 +64,16 @@ def _stop_sign_rows(
         if str(feature.get("type")) != "STOP_SIGN":
             continue
         place = _place_on_map(feature.get("position"), offset)
-        held = feature.get("lane")
-        held = [lanes[str(i)] for i in held if str(i) in lanes] if isinstance(held, (list, tuple)) else []
+        lanes_of_sign = feature.get("lane")
+        lanes_of_sign = (
+            [lanes[str(i)] for i in lanes_of_sign if str(i) in lanes]
+            if isinstance(lanes_of_sign, (list, tuple))
+            else []
+        )
         near = [
-            lane for lane in held if place is not None and _distance_to_lane_m(lane, place) <= _LARGEST_SIGN_DISTANCE_M
+            lane
+            for lane in lanes_of_sign
+            if place is not None and _distance_to_lane_m(lane, place) <= _LARGEST_SIGN_DISTANCE_M
         ]
         if place is None or not near:
             lost_names.append(name)

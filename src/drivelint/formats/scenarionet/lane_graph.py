@@ -27,19 +27,19 @@ _LEAST_LEVEL_DIFFERENCE_M: Final = 3.0
 def link_lanes(lanes: Mapping[str, CentreLine]) -> None:
     """Set the predecessors and successors of each lane, in place: as the scenario states them, else by lane ends that meet."""
     successors: dict[str, dict[str, None]] = defaultdict(dict)
-    said = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
-    if said:
+    has_links = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
+    if has_links:
         for name, lane in lanes.items():
-            for other in _ids_in_list(lane.feature.get("exit_lanes")):
-                successors[name][other] = None
-            for other in _ids_in_list(lane.feature.get("entry_lanes")):
-                successors[other][name] = None
+            for linked in _ids_in_list(lane.feature.get("exit_lanes")):
+                successors[name][linked] = None
+            for linked in _ids_in_list(lane.feature.get("entry_lanes")):
+                successors[linked][name] = None
     else:
         _link_ends_that_meet(lanes, successors)
     predecessors: dict[str, dict[str, None]] = defaultdict(dict)
-    for name, others in successors.items():
-        for other in others:
-            predecessors[other][name] = None
+    for name, linked_names in successors.items():
+        for linked in linked_names:
+            predecessors[linked][name] = None
     for name, lane in lanes.items():
         lane.predecessors, lane.successors = tuple(predecessors[name]), tuple(successors[name])
 
@@ -47,7 +47,11 @@ def link_lanes(lanes: Mapping[str, CentreLine]) -> None:
 def _ids_in_list(value: Any) -> Iterable[str]:
     """Return the ids in a list, as texts; none if the value is not a list."""
     value = value.tolist() if isinstance(value, np.ndarray) else value
-    return [str(each) for each in value if isinstance(each, (int, str))] if isinstance(value, (list, tuple)) else []
+    return (
+        [str(lane_id) for lane_id in value if isinstance(lane_id, (int, str))]
+        if isinstance(value, (list, tuple))
+        else []
+    )
 
 
 def _link_ends_that_meet(lanes: Mapping[str, CentreLine], successors: dict[str, dict[str, None]]) -> None:
@@ -80,14 +84,14 @@ def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
     tree = shapely.STRtree(
         [shapely.Polygon(np.vstack([*lane.bounds[:1], lane.bounds[1][::-1]])).buffer(0.0) for lane in ordered]
     )
-    found = {
+    neighbours = {
         lane.lane_id: Neighbours(
             *_neighbour_id_and_against(lane, ordered, tree, "left"),
             *_neighbour_id_and_against(lane, ordered, tree, "right"),
         )
         for lane in ordered
     }
-    return {name: _mutual_neighbours(name, found) for name in found}
+    return {name: _mutual_neighbours(name, neighbours) for name in neighbours}
 
 
 def _neighbour_id_and_against(
@@ -111,10 +115,10 @@ def _neighbour_id_and_against(
             votes[int(i)].append(1 if along > 0 else -1)
     for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
         neighbour = lanes[i]
-        joined = not {*lane.successors}.isdisjoint(neighbour.successors) or not {*lane.predecessors}.isdisjoint(
+        are_linked = not {*lane.successors}.isdisjoint(neighbour.successors) or not {*lane.predecessors}.isdisjoint(
             neighbour.predecessors
         )
-        if len(votes[i]) >= _LEAST_SAMPLES_IN_NEIGHBOUR and not joined:
+        if len(votes[i]) >= _LEAST_SAMPLES_IN_NEIGHBOUR and not are_linked:
             return neighbour.lane_id, sum(votes[i]) < 0
     return None, None
 
@@ -123,8 +127,8 @@ def _mutual_neighbours(name: str, neighbours: Mapping[str, Neighbours]) -> Neigh
     """Return the neighbours of a lane, except those that have another neighbour on the shared side, as a long lane beside a short one."""
     mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):
-        other = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")
+        counterpart = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")
         theirs = side if getattr(mutual_neighbours, f"{side}_against") else opposite
-        if other is not None and getattr(other, f"{theirs}_id") not in {None, name}:
+        if counterpart is not None and getattr(counterpart, f"{theirs}_id") not in {None, name}:
             mutual_neighbours = mutual_neighbours._replace(**{f"{side}_id": None, f"{side}_against": None})
     return mutual_neighbours

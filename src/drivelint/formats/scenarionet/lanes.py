@@ -62,8 +62,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         centre = centres[lane.lanelet_id]
         lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
     mark_junctions(lanes, least_share=_LEAST_JUNCTION_OVERLAP_SHARE, least_angle_rad=_LEAST_CROSSING_ANGLE_RAD)
-    said = scenario.dataset.side_driven_on(scenario.place_name)
-    side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
+    side_of_place = scenario.dataset.side_driven_on(scenario.place_name)
+    side = choose_side(
+        [("option", request.side), ("attribute", side_of_place), ("lanes", side_driven_on(lanes))], quality
+    )
     beside = furniture_rows(scenario, lanes, request.offset, quality)
     nation = scenario.dataset.nation_of(scenario.place_name)
     return map_from_bounds(
@@ -117,8 +119,8 @@ def _markings_of_sides(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]
                 None,
             )
             marks.append(Mark(("left", "right")[side], begin, end, marking))
-    known = {mark.side for mark in marks}
-    marks += [Mark(side, 0.0, 1.0, None) for side in ("left", "right") if side not in known]
+    sides = {mark.side for mark in marks}
+    marks += [Mark(side, 0.0, 1.0, None) for side in ("left", "right") if side not in sides]
     return tuple(sorted(marks, key=lambda mark: (mark.side, mark.begin)))
 
 
@@ -132,10 +134,10 @@ def _speed_limit_spans(lane: CentreLine) -> tuple[tuple[float, float, float | No
 
 def _number_or_zero(value: Any) -> float:
     try:
-        found = number_array(value, "a number")
+        number = number_array(value, "a number")
     except PickleError:
         return 0.0
-    return float(found) if found.size == 1 else 0.0
+    return float(number) if number.size == 1 else 0.0
 
 
 def _report_assumed_widths(

@@ -116,9 +116,9 @@ def array_at(
 
 def _integers_of_operations(operations: bytes) -> tuple[int, ...]:
     """Return the integers of successive operations BININT1, BININT2 and BININT."""
-    found, at = [], 0
+    integers, at = [], 0
     while at < len(operations):
         width = {0x4B: 1, 0x4D: 2, 0x4A: 4}[operations[at]]
-        found.append(int.from_bytes(operations[at + 1 : at + 1 + width], "little"))
+        integers.append(int.from_bytes(operations[at + 1 : at + 1 + width], "little"))
         at += 1 + width
-    return tuple(found)
+    return tuple(integers)

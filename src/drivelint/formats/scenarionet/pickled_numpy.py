@@ -47,8 +47,8 @@ def allowed_name(module: Any, name: Any) -> AllowedName:
     """Return the meaning of a name in the file. Errors: `PickleError` for a name that is refused."""
     meaning = _MEANING_BY_NAME.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
     if meaning is None:
-        what = f"{str(module)[:100]}.{str(name)[:100]}"
-        raise PickleError(f"it requests {what!r}, which is refused: only numpy arrays and plain values are read")
+        full_name = f"{str(module)[:100]}.{str(name)[:100]}"
+        raise PickleError(f"it requests {full_name!r}, which is refused: only numpy arrays and plain values are read")
     return AllowedName(meaning)
 
 
@@ -93,10 +93,10 @@ def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
         raw, kind, shape, order = arguments
         return _array_view(raw, kind, shape, order)
     # the container among the arguments, else an empty one; the default value of a defaultdict is not kept
-    given = next((value for value in arguments if not isinstance(value, (AllowedName, str))), None)
-    if given is not None and type(given).__name__ != meaning:
+    argument = next((value for value in arguments if not isinstance(value, (AllowedName, str))), None)
+    if argument is not None and type(argument).__name__ != meaning:
         raise TypeError(f"a {meaning} made of something else")
-    return _CONTAINER_BY_MEANING[meaning]() if given is None else given
+    return _CONTAINER_BY_MEANING[meaning]() if argument is None else argument
 
 
 def _array_view(raw: Any, kind: Any, shape: Any, order: Any) -> np.ndarray[Any, Any]:

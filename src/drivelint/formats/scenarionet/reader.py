@@ -82,8 +82,8 @@ def _correct_ego_track(
     """Correct the times and places of the ego's box, in place; return findings and notes. `is_interpolated`: per actor."""
     dataset, ego = scenario.dataset, tracks.ego
     if ego is None:
-        named = scenario.metadata.get("sdc_id")
-        return [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
+        ego_id = scenario.metadata.get("sdc_id")
+        return [], [] if ego_id is None else [f"the scenario's ego {str(ego_id)[:100]!r} has no track"]
     findings: list[QualityFinding] = []
     notes: list[str] = []
     if dataset.ego_message_s is not None and not is_interpolated[ego] and tracks.present[ego].all():

@@ -79,13 +79,14 @@ class Scenario(NamedTuple):
 
 def read_scenario(content: bytes) -> Scenario:
     """Return the scenario in a pickle. Errors: `PickleError` if the pickle is damaged, or is not a scenario."""
-    found = load(content)
+    content_dict = load(content)
     parts = {
-        name: _dict_in_scenario(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")
+        name: _dict_in_scenario(content_dict, name)
+        for name in ("metadata", "tracks", "dynamic_map_states", "map_features")
     }
     facts = _FACTS["dataset"].get(str(parts["metadata"].get("dataset", "")).lower(), {})
-    named = [_dicts_in_part(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
-    scenario = Scenario(len(content), DatasetFacts(**facts), parts["metadata"], *named)
+    dicts = [_dicts_in_part(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
+    scenario = Scenario(len(content), DatasetFacts(**facts), parts["metadata"], *dicts)
     scenario.refuse_if_more_values_than_file_bytes(
         sum(map(_n_points, scenario.features.values())), "points of map features"
     )
@@ -132,7 +133,7 @@ def number_array(value: Any, where: str) -> Floats:
         if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
             return value.astype(np.float64)
         if isinstance(value, (list, tuple)):
-            plain = all(isinstance(each, (int, float)) for each in value)
+            plain = all(isinstance(item, (int, float)) for item in value)
             return np.array(value, np.float64) if plain else point_array(value, where)
         if isinstance(value, Points):
             return value.array

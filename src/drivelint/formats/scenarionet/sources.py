@@ -142,9 +142,9 @@ def set_velocities_from_keyframes(tracks: Tracks, actors: Mask, steps_per_keyfra
 
 def _track_extents_m(tracks: Tracks) -> Floats:
     """Return the extent in metres of each actor's places (n,), along x or y, whichever is larger."""
-    seen = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
+    place = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
     with np.errstate(invalid="ignore"):
-        spread = np.fmax.reduce(seen, axis=1) - np.fmin.reduce(seen, axis=1)
+        spread = np.fmax.reduce(place, axis=1) - np.fmin.reduce(place, axis=1)
     return np.asarray(np.nan_to_num(spread).max(axis=1), np.float64)
 
 

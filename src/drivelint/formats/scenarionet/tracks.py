@@ -98,9 +98,9 @@ def _state_array(state: dict[str, Any], name: str, steps: int, where: str) -> Fl
 
 def _class_code(track: dict[str, Any]) -> int:
     """Return a track's class, by the data set's own type if `ACTOR_CLASS_BY_TYPE` has it, else by ScenarioNet's type; -1: not known."""
-    own = track.get("metadata")
-    words = (own.get("type") if isinstance(own, dict) else None, track.get("type"))
-    found = next(
+    metadata = track.get("metadata")
+    words = (metadata.get("type") if isinstance(metadata, dict) else None, track.get("type"))
+    actor_class = next(
         (ACTOR_CLASS_BY_TYPE[word] for word in words if isinstance(word, str) and word in ACTOR_CLASS_BY_TYPE), None
     )
-    return -1 if found is None else ACTOR_CLASSES.index(found)
+    return -1 if actor_class is None else ACTOR_CLASSES.index(actor_class)

@@ -87,9 +87,9 @@ class _PickleMachine:
                     if (
                         type(value) is AllowedName
                         and value == _ARRAY_NAME
-                        and (found := array_at(content, at, memo, self.next_memo_number))
+                        and (shortcut := array_at(content, at, memo, self.next_memo_number))
                     ):
-                        value, at, self.next_memo_number = found
+                        value, at, self.next_memo_number = shortcut
                     push(value)
                 elif code == 0x6A and (value := memo.get(number(content, at)[0])) is not None:  # LONG_BINGET
                     at += 4
@@ -206,7 +206,7 @@ class _PickleMachine:
 
     def _point_of_memo_number(self, number: int) -> Any:
         """Return the point with this memo number, of a list in `points`."""
-        k = bisect_right(self.points, number, key=lambda each: each.first_memo_number) - 1
+        k = bisect_right(self.points, number, key=lambda point: point.first_memo_number) - 1
         if k < 0 or number >= self.points[k].first_memo_number + self.points[k].n:
             raise IndexError
         return self.points[k].point_of_memo_number(number)
@@ -226,27 +226,27 @@ class _PickleMachine:
     def _pop_to_mark(self) -> list[Any]:
         """Remove the values above the last mark from the stack, and return them."""
         mark = self.marks.pop()
-        found = self.stack[mark:]
+        values = self.stack[mark:]
         del self.stack[mark:]
-        return found
+        return values
 
     def _pop_values(self, n: int) -> tuple[Any, ...]:
         """Remove the last n values from the stack, and return them. Errors: `IndexError` if one is below the last mark."""
         first = len(self.stack) - n
         if first < (self.marks[-1] if self.marks else 0):
             raise IndexError
-        found = tuple(self.stack[first:])
+        values = tuple(self.stack[first:])
         del self.stack[first:]
-        return found
+        return values
 
     # ---- containers
 
     def push_empty_list(self, at: int) -> int:
-        found = points_at(self.content, at, self.next_memo_number)
-        if found is None:
+        points_and_end = points_at(self.content, at, self.next_memo_number)
+        if points_and_end is None:
             self.stack.append([])
             return at
-        points, end = found
+        points, end = points_and_end
         self.points.append(points)
         self.stack.append(points)
         self.memo[self.next_memo_number] = points

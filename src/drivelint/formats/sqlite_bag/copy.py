@@ -61,13 +61,13 @@ def _write_channels(file: SqliteFile, sink: Sink) -> dict[int, int]:
     numbers: dict[int, int] = {}
     for number, channel in file.channels.items():
         schema = replace(file.schemas[channel.schema_id], id=0)
-        known = (
+        same_channels = (
             there
-            for there, each in sink.channels.items()
-            if (each.topic, each.message_encoding) == (channel.topic, channel.message_encoding)
-            and replace(sink.schemas[each.schema_id], id=0) == schema
+            for there, sink_channel in sink.channels.items()
+            if (sink_channel.topic, sink_channel.message_encoding) == (channel.topic, channel.message_encoding)
+            and replace(sink.schemas[sink_channel.schema_id], id=0) == schema
         )
-        there = next(known, None)
+        there = next(same_channels, None)
         numbers[number] = (
             sink.add_channel(channel.topic, channel.message_encoding, schema, channel.metadata)
             if there is None

@@ -79,17 +79,17 @@ def damage_error(path: Path, problem: str) -> TraceError:
 
 def check_pages(path: Path, connection: sqlite3.Connection) -> None:
     """Raise `TraceError` if the pages of the file contradict each other: rows could be missing without an error."""
-    found = connection.execute("PRAGMA quick_check(1)").fetchone()
-    if found is None or found[0] != "ok":
-        raise damage_error(path, "its check failed" if found is None else str(found[0])[:200])
+    outcome = connection.execute("PRAGMA quick_check(1)").fetchone()
+    if outcome is None or outcome[0] != "ok":
+        raise damage_error(path, "its check failed" if outcome is None else str(outcome[0])[:200])
 
 
 def has_definitions(path: Path, connection: sqlite3.Connection) -> bool:
     """Return whether the file has message definitions. Errors: `TraceError` if their table is not as rosbag2 writes it."""
-    found = connection.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (DEFINITIONS_TABLE,)).fetchone()
-    if found is not None:
+    row = connection.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (DEFINITIONS_TABLE,)).fetchone()
+    if row is not None:
         _check_table(path, connection, DEFINITIONS_TABLE, _DEFINITION_COLUMNS)
-    return found is not None
+    return row is not None
 
 
 def is_repaired_with_losses(connection: sqlite3.Connection) -> bool:
@@ -106,9 +106,9 @@ def _refuse_incomplete_file(path: Path) -> None:
     if len(head) < _FILE_HEADER_BYTES:
         raise damage_error(path, f"{size} bytes")
     (page,), (pages,) = struct.unpack_from(">H", head, 16), struct.unpack_from(">I", head, 28)
-    said = pages * (65536 if page == 1 else page)
-    if size < said:
-        raise damage_error(path, f"{size} of {said} bytes")
+    due_bytes = pages * (65536 if page == 1 else page)
+    if size < due_bytes:
+        raise damage_error(path, f"{size} of {due_bytes} bytes")
     # SQLite writes beside the file to which a link leads
     places = [path, path.resolve()] if path.is_symlink() else [path]
     for place, suffix in product(places, ("-wal", "-journal")):
@@ -127,11 +127,11 @@ def _check_tables(path: Path, connection: sqlite3.Connection) -> None:
 
 def _check_table(path: Path, connection: sqlite3.Connection, table: str, columns: set[str]) -> None:
     """Raise `TraceError` unless the table is stored in the file with these columns: a view, for example, can have endless rows."""
-    found = connection.execute("SELECT type, rootpage FROM sqlite_master WHERE name = ?", (table,)).fetchall()
-    if not found:
+    entries = connection.execute("SELECT type, rootpage FROM sqlite_master WHERE name = ?", (table,)).fetchall()
+    if not entries:
         raise TraceError(f"{path}: a SQLite file without the table {table!r}: no bag of ROS 2: check the path")
     stored = {name for _, name, _, _, _, _, hidden in connection.execute(f"PRAGMA table_xinfo({table})") if not hidden}
-    if len(found) != 1 or found[0][0] != "table" or not found[0][1] or not columns <= stored:
+    if len(entries) != 1 or entries[0][0] != "table" or not entries[0][1] or not columns <= stored:
         raise TraceError(
             f"{path}: its table {table!r} is not as rosbag2 writes it: record the log again, or convert it with ros2 bag convert"
         )

@@ -31,7 +31,7 @@ def candidate_definitions(kind: str) -> list[str]:
     if kind not in messages:
         return []
     newest = messages | variants
-    return list(dict.fromkeys(_definition_with_members(kind, each) for each in (newest, messages)))
+    return list(dict.fromkeys(_definition_with_members(kind, variant) for variant in (newest, messages)))
 
 
 def definition_in_files(folder: Path, kind: str) -> str:
@@ -47,13 +47,13 @@ def definition_in_files(folder: Path, kind: str) -> str:
             inner = _full_type_name(word, container)
             if inner is None or inner in messages:
                 continue
-            known = _definitions_and_newer_variants()[0].get(inner)
-            messages[inner] = known if known is not None else _definition_file_text(folder, inner)
+            definition = _definitions_and_newer_variants()[0].get(inner)
+            messages[inner] = definition if definition is not None else _definition_file_text(folder, inner)
             waiting.append(inner)
             if len(messages) > _MOST_MESSAGE_TYPES_IN_DEFINITION:
                 raise UsageError(f"{folder}: {kind} contains more than {_MOST_MESSAGE_TYPES_IN_DEFINITION} messages")
-    others = (f"{_DEFINITION_SEPARATOR}\nMSG: {each}\n{text}" for each, text in messages.items() if each != kind)
-    return "\n".join([messages[kind], *others])
+    members = (f"{_DEFINITION_SEPARATOR}\nMSG: {member}\n{text}" for member, text in messages.items() if member != kind)
+    return "\n".join([messages[kind], *members])
 
 
 def _full_type_name(word: str, container: str) -> str | None:
@@ -87,8 +87,8 @@ def _definitions_and_newer_variants() -> tuple[dict[str, str], dict[str, str]]:
 
 def _definition_with_members(kind: str, messages: dict[str, str]) -> str:
     used = [kind]
-    for each in used:  # grows while it is read
-        used += [inner for inner in dict.fromkeys(_MESSAGE_TYPE_PATTERN.findall(messages[each])) if inner not in used]
+    for member in used:  # grows while it is read
+        used += [inner for inner in dict.fromkeys(_MESSAGE_TYPE_PATTERN.findall(messages[member])) if inner not in used]
     return "\n".join(
-        [messages[kind], *(f"{_DEFINITION_SEPARATOR}\nMSG: {each}\n{messages[each]}" for each in used[1:])]
+        [messages[kind], *(f"{_DEFINITION_SEPARATOR}\nMSG: {member}\n{messages[member]}" for member in used[1:])]
     )

@@ -127,10 +127,10 @@ class SqliteFile(Container):
         self.losses.add(row, row, cause)
 
     def _message_data(self, connection: sqlite3.Connection, row: int) -> bytes:
-        found = connection.execute("SELECT data FROM messages WHERE rowid = ?", (row,)).fetchone()
-        if found is None or not isinstance(found[0], bytes):
+        message_row = connection.execute("SELECT data FROM messages WHERE rowid = ?", (row,)).fetchone()
+        if message_row is None or not isinstance(message_row[0], bytes):
             raise damage_error(self.path, f"row {row} of messages has no data")
-        return found[0]
+        return message_row[0]
 
     def _read_topics(self, connection: sqlite3.Connection) -> None:
         definitions = self._definitions_in_file(connection)
@@ -139,7 +139,7 @@ class SqliteFile(Container):
         rows = connection.execute(f"SELECT id, name, type, serialization_format, {qos} FROM topics ORDER BY id")
         of_kind: dict[str, int] = {}
         for key, topic, kind, encoding, profiles in rows:
-            if not all(isinstance(each, str) for each in (topic, kind, encoding)) or len(self._numbers) >= MOST_TOPICS:
+            if not all(isinstance(cell, str) for cell in (topic, kind, encoding)) or len(self._numbers) >= MOST_TOPICS:
                 raise damage_error(self.path, f"row {key} of topics is not as rosbag2 writes it")
             if kind not in of_kind:
                 of_kind[kind] = len(of_kind) + 1
@@ -152,20 +152,20 @@ class SqliteFile(Container):
         """Return type -> encoding and text of the definitions in the file."""
         if not has_definitions(self.path, connection):
             return {}
-        found: dict[str, tuple[str, bytes]] = {}
+        definitions: dict[str, tuple[str, bytes]] = {}
         rows = connection.execute(
             f"SELECT topic_type, encoding, encoded_message_definition FROM {DEFINITIONS_TABLE} ORDER BY rowid"
         )
         n_bytes, size = 0, self.path.stat().st_size
         for kind, encoding, text in rows:
-            if not all(isinstance(each, str) for each in (kind, encoding, text)):
+            if not all(isinstance(cell, str) for cell in (kind, encoding, text)):
                 raise damage_error(self.path, f"the definition of {kind!r} is not text")
             n_bytes += len(text) + 1
             if n_bytes > size:
                 raise damage_error(self.path, f"its message definitions are longer than its {size} bytes")
             if text:
-                found.setdefault(kind, (encoding, text.encode()))
-        return found
+                definitions.setdefault(kind, (encoding, text.encode()))
+        return definitions
 
     def _schema(
         self, connection: sqlite3.Connection, number: int, kind: str, definitions: dict[str, tuple[str, bytes]]
@@ -174,19 +174,19 @@ class SqliteFile(Container):
         if kind in definitions:
             encoding, text = definitions[kind]
             return Schema(id=number, name=kind, encoding=encoding, data=text)
-        known = [
+        candidates = [
             Schema(id=number, name=kind, encoding="ros2msg", data=text.encode())
             for text in candidate_definitions(short_type_name(kind))
         ]
-        if not known:
+        if not candidates:
             return Schema(id=number, name=kind, encoding=NO_DEFINITION_ENCODING, data=b"")
         self.assumed_kinds.add(kind)
         message_type = MESSAGE_TYPES.get(short_type_name(kind))
-        if len(known) == 1 or message_type is None:  # nothing reads messages of another type
-            return known[0]
+        if len(candidates) == 1 or message_type is None:  # nothing reads messages of another type
+            return candidates[0]
         samples = self._longest_messages(connection, kind, number)
         # messages of one object also fit the oldest definition, so of those that fit equally many the newest is taken
-        return max(known, key=lambda each: self._n_fitting(each, message_type.fields, samples))
+        return max(candidates, key=lambda candidate: self._n_fitting(candidate, message_type.fields, samples))
 
     def _longest_messages(self, connection: sqlite3.Connection, kind: str, schema_id: int) -> list[LogMessage]:
         """Return the longest messages of a type, which contain most objects."""
@@ -201,8 +201,8 @@ class SqliteFile(Container):
     def _n_fitting(self, schema: Schema, fields: FieldTree, samples: list[LogMessage]) -> int:
         """Return how many of the messages a definition fits."""
         decoder, n = Decoder(self.path, schema, fields), 0
-        for each in samples:
+        for sample in samples:
             with suppress(TraceError):
-                decoder.table([each])
+                decoder.table([sample])
                 n += 1
         return n

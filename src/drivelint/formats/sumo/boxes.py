@@ -93,20 +93,20 @@ def _has_length_unlike_track(row_actors: RowActors, length: Floats) -> Mask:
     lengths[row] = length
     actors = pairs // n_types
     for actor in np.unique(actors[1:][actors[1:] == actors[:-1]]):
-        mine = np.flatnonzero(actors == actor)
-        known, at = np.unique(lengths[mine][np.isfinite(lengths[mine])], return_inverse=True)
-        if len(known):
-            most = known[np.argmax(np.bincount(at, count[mine][np.isfinite(lengths[mine])]))]
-            differs[mine] = lengths[mine] != most
-    found: Mask = differs[row]
-    return found
+        of_actor = np.flatnonzero(actors == actor)
+        track_lengths, at = np.unique(lengths[of_actor][np.isfinite(lengths[of_actor])], return_inverse=True)
+        if len(track_lengths):
+            usual_length = track_lengths[np.argmax(np.bincount(at, count[of_actor][np.isfinite(lengths[of_actor])]))]
+            differs[of_actor] = lengths[of_actor] != usual_length
+    is_unlike: Mask = differs[row]
+    return is_unlike
 
 
 def _is_ego(row_actors: RowActors, actor_class: Codes, ego: str | None) -> Mask:
     if ego == ALL_EGOS and ego not in row_actors.ids:
         return np.isin(actor_class, [ACTOR_CLASSES.index(word) for word in MOTOR_VEHICLES])
-    found: Mask = row_actors.actor == (row_actors.ids.index(ego) if ego in row_actors.ids else -1)
-    return found
+    of_ego: Mask = row_actors.actor == (row_actors.ids.index(ego) if ego in row_actors.ids else -1)
+    return of_ego
 
 
 def _size_findings(row_actors: RowActors, changing: Mask, sizeless: Mask) -> list[QualityFinding]:

@@ -33,12 +33,12 @@ def seconds_of_texts(texts: pa.Array | pa.ChunkedArray) -> pa.Array:
     times = pc.dictionary_encode(texts.combine_chunks() if isinstance(texts, pa.ChunkedArray) else texts)
     is_clock = pc.match_substring(times.dictionary, ":")
     clocks = pa.array(map(_seconds_of_clock, times.dictionary.filter(is_clock).to_pylist()), pa.float64())
-    others = pc.if_else(is_clock, pa.scalar(None, pa.string()), times.dictionary).cast(pa.float64())
-    return pc.replace_with_mask(others, is_clock, clocks).take(times.indices)
+    numbers = pc.if_else(is_clock, pa.scalar(None, pa.string()), times.dictionary).cast(pa.float64())
+    return pc.replace_with_mask(numbers, is_clock, clocks).take(times.indices)
 
 
 def _seconds_of_clock(text: str) -> float:
-    found = seconds(text)
-    if math.isnan(found):
+    clock_s = seconds(text)
+    if math.isnan(clock_s):
         raise pa.ArrowInvalid(f"{text!r} is neither seconds nor a clock, [D:]H:M:S")
-    return found
+    return clock_s

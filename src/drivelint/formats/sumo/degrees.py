@@ -60,11 +60,11 @@ def positions_in_net_and_findings(
         raise TraceError(
             f"{path}: {_DEGREES_MESSAGE}, and the net {net.name} cannot convert them to metres: {trouble}: {_DEGREES_REMEDY}"
         )
-    placed = np.isfinite(xy).all(axis=1)
-    found = np.full_like(xy, np.nan)
-    found[placed] = frame.unproject(transform(xy[placed], WGS84, frame.reference))
-    found[~np.isfinite(found).all(axis=1)] = np.nan
-    return found, _rounding_findings(xy[placed], net)
+    has_place = np.isfinite(xy).all(axis=1)
+    positions = np.full_like(xy, np.nan)
+    positions[has_place] = frame.unproject(transform(xy[has_place], WGS84, frame.reference))
+    positions[~np.isfinite(positions).all(axis=1)] = np.nan
+    return positions, _rounding_findings(xy[has_place], net)
 
 
 def _are_positions_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
@@ -94,12 +94,12 @@ def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool 
     same = np.diff(actor[order]) == 0
     dt = np.diff(rows.numbers("time")[order])
     way = np.hypot(*np.diff(xy[order], axis=0).T)
-    moved = same & (dt > 0.0) & (way >= _LEAST_DISPLACEMENT)
-    if not moved.any():
+    is_displaced = same & (dt > 0.0) & (way >= _LEAST_DISPLACEMENT)
+    if not is_displaced.any():
         return None
-    per_s = way[moved] / dt[moved]
+    per_s = way[is_displaced] / dt[is_displaced]
     speed = rows.numbers("speed")[order]
-    mean = (speed[1:] + speed[:-1])[moved] / 2.0
+    mean = (speed[1:] + speed[:-1])[is_displaced] / 2.0
     if np.isfinite(mean).any():
         return bool(np.nanmedian(mean / per_s) > _LEAST_MPS_PER_DEGREE_PER_S)
     return bool(np.median(per_s) < _LARGEST_DEGREES_PER_S)

@@ -130,8 +130,8 @@ def _lost_times(time_s: Floats, lost_rows: Mask, cause: str) -> list[LostTime]:
 
 
 def _is_fcd_file(file: Path) -> bool:
-    with file.open("rb") as opened:
-        return is_fcd(file, opened.read(HEAD_BYTES))
+    with file.open("rb") as content:
+        return is_fcd(file, content.read(HEAD_BYTES))
 
 
 def _read_rows(path: Path) -> Rows:
@@ -165,13 +165,13 @@ def _row_kinds_from_types(rows: Rows, types: Mapping[str, VehicleType]) -> Codes
         return rows.kind
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     ids = frozenset(pc.unique(rows.table["id"]).to_pylist())
-    said = [type_and_original(name, types, ids)[0] for name in names.dictionary.to_pylist()]
-    by_type = np.array([_KIND_BY_ACTOR_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
+    type_of_names = [type_and_original(name, types, ids)[0] for name in names.dictionary.to_pylist()]
+    by_type = np.array([_KIND_BY_ACTOR_CLASS.get(kind.actor_class, VEHICLE) for kind in type_of_names], np.int8)[
         names.indices.to_numpy()
     ]
     # a carried person stays a person whatever vehicle class its type has
-    told = open_ & (by_type != UNKNOWN_KIND) & ~((rows.kind == PERSON_OR_CONTAINER) & (by_type == VEHICLE))
-    return np.where(told, by_type, rows.kind)
+    is_by_type = open_ & (by_type != UNKNOWN_KIND) & ~((rows.kind == PERSON_OR_CONTAINER) & (by_type == VEHICLE))
+    return np.where(is_by_type, by_type, rows.kind)
 
 
 def _actor_ids_indices_and_notes(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
@@ -180,16 +180,19 @@ def _actor_ids_indices_and_notes(rows: Rows) -> tuple[list[str], NDArray[np.int3
     SUMO's vehicles, persons and containers may have the same id: then the id of a person or container begins with its kind.
     """
     encoded = pc.dictionary_encode(rows.table["id"]).combine_chunks()
-    ids, actor = [str(each) for each in encoded.dictionary.to_pylist()], encoded.indices.to_numpy().astype(np.int32)
+    ids, actor = [str(value) for value in encoded.dictionary.to_pylist()], encoded.indices.to_numpy().astype(np.int32)
     is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN_KIND))
     if is_vehicle.all():
         return ids, actor, []
     part = np.where(is_vehicle, 0, np.where(rows.kind == CONTAINER, CONTAINER, PERSON))
     pairs, code = np.unique(actor.astype(np.int64) * len(KINDS) + part, return_inverse=True)
-    whose, kinds = pairs // len(KINDS), pairs % len(KINDS)
-    twice = np.bincount(whose, minlength=len(ids))[whose] > 1
-    names = [f"{KINDS[k]}:{ids[i]}" if both and k else ids[i] for i, k, both in zip(whose, kinds, twice, strict=True)]
-    shared = sorted({ids[i] for i in whose[twice]})
+    id_index, kinds = pairs // len(KINDS), pairs % len(KINDS)
+    twice = np.bincount(id_index, minlength=len(ids))[id_index] > 1
+    names = [
+        f"{KINDS[k]}:{ids[i]}" if is_shared and k else ids[i]
+        for i, k, is_shared in zip(id_index, kinds, twice, strict=True)
+    ]
+    shared = sorted({ids[i] for i in id_index[twice]})
     note = (
         f"persons or containers have the same ids as vehicles ({name_list(shared)}): they are renamed "
         f"{KINDS[PERSON]}:ID or {KINDS[CONTAINER]}:ID"

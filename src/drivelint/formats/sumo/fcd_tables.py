@@ -98,20 +98,22 @@ def _rows_of_table(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -
     if len(groups) == 1:
         (columns,) = groups.values()
         try:
-            kind, own = _row_kinds_and_cleaned_columns({name: table[column] for name, column in columns.items()})
+            kind, row_columns = _row_kinds_and_cleaned_columns(
+                {name: table[column] for name, column in columns.items()}
+            )
         except pa.ArrowException as error:
             raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log again") from error
-        return typed_rows(path, own, kind)
+        return typed_rows(path, row_columns, kind)
     parts, order = [], []
     for element, columns in groups.items():
         here = np.any([_is_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
-        chosen = table.filter(pa.array(here))
-        codes = np.full(chosen.num_rows, KINDS.index(element), np.int8)
-        parts.append(typed_rows(path, {name: chosen[column] for name, column in columns.items()}, codes))
+        rows_here = table.filter(pa.array(here))
+        codes = np.full(rows_here.num_rows, KINDS.index(element), np.int8)
+        parts.append(typed_rows(path, {name: rows_here[column] for name, column in columns.items()}, codes))
         order.append(np.flatnonzero(here))
     rows = np.argsort(np.concatenate(order), kind="stable")
-    joined = pa.concat_tables([part.table for part in parts]).combine_chunks()
-    return Rows(joined.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
+    all_rows = pa.concat_tables([part.table for part in parts]).combine_chunks()
+    return Rows(all_rows.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
 
 
 def _row_kinds_and_cleaned_columns(

@@ -54,11 +54,11 @@ def _has_geo_option(head: bytes) -> bool | None:
 
 def _selection_options(head: bytes) -> tuple[str, ...]:
     """Return the options of SUMO's configuration by which some road users are not written, as `name=value`."""
-    found = [(name.decode(), value.decode("utf-8", "replace")) for name, value in _SELECTION_OPTION.findall(head)]
+    options = [(name.decode(), value.decode("utf-8", "replace")) for name, value in _SELECTION_OPTION.findall(head)]
     # a negative probability is SUMO's default, with which every road user is written
     return tuple(
         f"{name}={value}"
-        for name, value in found
+        for name, value in options
         if not (name.endswith("probability") and not 0.0 <= safe_xml.number_or_nan(value) < 1.0)
     )
 

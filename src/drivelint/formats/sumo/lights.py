@@ -58,9 +58,11 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     if len(log_files) == 1:
         _read_light_states(log_files[0], recording)
     elif files:
-        what = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
+        reason = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
         names = name_list([file.name for file in log_files or files])
-        note = f"{log.name}: light states in {names} are not read: {what}: call it {_name_up_to_first_dot(log)}.tls.xml"
+        note = (
+            f"{log.name}: light states in {names} are not read: {reason}: call it {_name_up_to_first_dot(log)}.tls.xml"
+        )
         recording.notes.append(note)
 
 
@@ -69,8 +71,8 @@ def _name_up_to_first_dot(file: Path) -> str:
 
 
 def _has_light_states(file: Path) -> bool:
-    with file.open("rb") as opened:
-        return b"<tlsStates" in opened.read(_HEAD_BYTES)
+    with file.open("rb") as content:
+        return b"<tlsStates" in content.read(_HEAD_BYTES)
 
 
 def _read_light_states(file: Path, recording: Recording) -> None:
@@ -85,12 +87,14 @@ def _read_light_states(file: Path, recording: Recording) -> None:
     if lacks_end:
         recording.notes.append(f"{file.name} ends without </tlsStates>: its writer did not finish it")
     if unread.any():
-        what = f"light states of {file.name} without a time, light or state"
+        description = f"light states of {file.name} without a time, light or state"
         n = int(unread.sum())
-        recording.findings.append(QualityFinding("malformed_row", "warning", f"{what}: {n}: they are left out", n))
+        recording.findings.append(
+            QualityFinding("malformed_row", "warning", f"{description}: {n}: they are left out", n)
+        )
         timed = np.abs(times_s) < _LARGEST_TIME_S
         t_ns = np.round(np.where(timed, times_s, 0.0) * 1e9).astype(np.int64)
-        recording.lost_times += times_of_lost_rows(t_ns, timed, unread, what)
+        recording.lost_times += times_of_lost_rows(t_ns, timed, unread, description)
 
 
 def _rows_times_and_unreadable_states(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:

@@ -41,8 +41,8 @@ class Location(NamedTuple):
         if frame is None:
             return f"its netOffset is {self.offset_text!r}"
         west, south, east, north = self.boundary or (0.0, 0.0, 0.0, 0.0)
-        found = why_unusable(frame, (west + east) / 2.0, (south + north) / 2.0)
-        return found and f"of its projection {self.reference!r}: {found}"
+        reason = why_unusable(frame, (west + east) / 2.0, (south + north) / 2.0)
+        return reason and f"of its projection {self.reference!r}: {reason}"
 
     def is_in_net(self, xy: Floats) -> Mask:
         """Return for places (n, 2) in the net's coordinates whether they lie in the net; False if its boundary is not known."""

@@ -186,11 +186,14 @@ def _bounded_lane(
         raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s is not possible")
     kind, is_access_unread = _lane_kind_and_is_access_unread(element.get("allow"), element.get("disallow"))
     if is_access_unread:
-        what = " ".join(
+        access_text = " ".join(
             f'{name}="{element.get(name)}"' for name in ("allow", "disallow") if element.get(name) is not None
         )
         quality.add(
-            "access_unread", "warning", element.get("id"), f"cars may not use it ({what}), which no lane type shows"
+            "access_unread",
+            "warning",
+            element.get("id"),
+            f"cars may not use it ({access_text}), which no lane type shows",
         )
     if kind == "driving" and element.get("acceleration") in {"true", "1"}:
         kind = "entry"
@@ -239,8 +242,8 @@ def _parallel_line(line: Floats, offset_m: float) -> Floats:
     between = before + after
     # mitre: at a corner the point keeps the distance from both segments
     size = np.maximum((between * before).sum(1), 2 / _LARGEST_MITRE_FACTOR**2)
-    found: Floats = line + offset_m * between / size[:, None]
-    return found
+    parallel: Floats = line + offset_m * between / size[:, None]
+    return parallel
 
 
 def _connect_lanes(root: etree._Element, net: _Net) -> None:
@@ -272,9 +275,9 @@ def _bend_internal_lanes(net: _Net) -> None:
     for name in sorted(inside):
         lane = net.lanes[name]
         middle, half = (lane.left + lane.right) / 2, float(np.hypot(*(lane.left - lane.right)[0])) / 2
-        for end, others in ((0, before[name]), (-1, [to for to in lane.successors if to not in inside])):
-            if len(others) == 1:
-                middle = _bent_centre_line(middle, net.lanes[others[0]], end)
+        for end, outer_lanes in ((0, before[name]), (-1, [to for to in lane.successors if to not in inside])):
+            if len(outer_lanes) == 1:
+                middle = _bent_centre_line(middle, net.lanes[outer_lanes[0]], end)
         lane.left, lane.right = _parallel_line(middle, half), _parallel_line(middle, -half)
 
 
@@ -286,9 +289,9 @@ def _bent_centre_line(centre_line: Floats, joined_lane: BoundedLane, end: int) -
     line = (joined_lane.left + joined_lane.right) / 2
     step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
     step = step / np.hypot(*step)
-    own = centre_line[1] - centre_line[0] if end == 0 else centre_line[-2] - centre_line[-1]
-    length = float(np.hypot(*own))
-    if length < 2 * _ADDED_POINT_DISTANCE_M or float(own @ step) < _LEAST_BEND_COSINE * length:
+    step_inwards = centre_line[1] - centre_line[0] if end == 0 else centre_line[-2] - centre_line[-1]
+    length = float(np.hypot(*step_inwards))
+    if length < 2 * _ADDED_POINT_DISTANCE_M or float(step_inwards @ step) < _LEAST_BEND_COSINE * length:
         return centre_line
     at = 1 if end == 0 else len(centre_line) - 1
     return np.insert(centre_line, at, centre_line[end] + _ADDED_POINT_DISTANCE_M * step, axis=0)
@@ -298,17 +301,17 @@ def _continue_speed_limits_into_junctions(
     lanes: Mapping[str, BoundedLane], successors: Mapping[str, Iterable[str]], junction_lanes: Iterable[str]
 ) -> None:
     waiting = {name for name in junction_lanes if not lanes[name].limits}
-    found: dict[str, list[tuple[SpeedLimitSpan, ...]]] = defaultdict(list)
+    limits_by_lane: dict[str, list[tuple[SpeedLimitSpan, ...]]] = defaultdict(list)
     for name, targets in successors.items():
         for to in targets:
             if to in waiting and lanes[name].limits:
-                found[to].append(lanes[name].limits)
-    for to, limits in found.items():
+                limits_by_lane[to].append(lanes[name].limits)
+    for to, limits in limits_by_lane.items():
         if len(set(limits)) == 1:
             lanes[to].limits = limits[0]
 
 
 def _lane_id(net: _Net, edge: str, index: str) -> str:
     """Return the id of a lane of an edge by its index, '' where there is none."""
-    known = net.edges.get(edge, [])
-    return f"{edge}_{index}" if f"{edge}_{index}" in known else ""
+    lane_ids = net.edges.get(edge, [])
+    return f"{edge}_{index}" if f"{edge}_{index}" in lane_ids else ""

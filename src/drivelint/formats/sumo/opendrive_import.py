@@ -35,11 +35,11 @@ class OpenDriveImport(NamedTuple):
 
 def opendrive_import(content: bytes, root: etree._Element, quality: MapQuality) -> OpenDriveImport | None:
     """Return the OpenDRIVE source of a net, from the configuration in its first comment, and warn in `quality`; None without one."""
-    found = _SOURCE_OPTION.search(content[:_HEAD_BYTES].partition(b"-->")[0])
-    if found is None:
+    match = _SOURCE_OPTION.search(content[:_HEAD_BYTES].partition(b"-->")[0])
+    if match is None:
         return None
-    file = found[1].decode("utf-8", "replace")
+    file = match[1].decode("utf-8", "replace")
     message = f"netconvert imported this net from the OpenDRIVE file {file}: its side of traffic and limits may be lost: give that file"
     quality.add("imported_net", "warning", None, message)
-    speeds = {each.get("id", ""): number_or_nan(each.get("speed", "")) for each in root.iterfind("type")}
+    speeds = {element.get("id", ""): number_or_nan(element.get("speed", "")) for element in root.iterfind("type")}
     return OpenDriveImport(file, speeds)

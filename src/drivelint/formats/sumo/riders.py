@@ -23,9 +23,9 @@ def is_riding(rows: Rows) -> Mask:
 
     Of several rows of unknown kind in one place, all but the first ride: SUMO writes a vehicle before its passengers.
     """
-    said = rows.table["vehicle"]
-    is_rider: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
-    carried = np.isin(rows.kind, (PERSON, CONTAINER, PERSON_OR_CONTAINER)) & pc.is_null(said).to_numpy()
+    vehicle_ids = rows.table["vehicle"]
+    is_rider: Mask = pc.fill_null(pc.not_equal(vehicle_ids, ""), fill_value=False).to_numpy()
+    carried = np.isin(rows.kind, (PERSON, CONTAINER, PERSON_OR_CONTAINER)) & pc.is_null(vehicle_ids).to_numpy()
     may_ride = carried | (rows.kind == UNKNOWN_KIND)
     if not may_ride.any():
         return is_rider

@@ -57,8 +57,8 @@ def _light_rows_and_lanes_ending_at_lights(
         if lanes[source].drivable:
             ends.add(source)
     rows = [
-        _signal_row(name, "traffic_light", lanes[at], s, turns=sorted(said) or None)
-        for (name, at, s), said in sorted(turns.items())
+        _signal_row(name, "traffic_light", lanes[at], s, turns=sorted(turns_of_light) or None)
+        for (name, at, s), turns_of_light in sorted(turns.items())
         if lanes[at].drivable
     ]
     return rows, ends
@@ -79,11 +79,11 @@ def _sign_rows_and_lanes_ending_at_stop_signs(
             states[link.get("from", "")].add(link.get("state", ""))
     rows: Rows = []
     stops = set()
-    for edge, said in sorted(states.items()):
-        found = {_SIGN_OF_LINK_STATE.get(state) for state in said}
-        if None in found or not found:
+    for edge, link_states in sorted(states.items()):
+        signs = {_SIGN_OF_LINK_STATE.get(state) for state in link_states}
+        if None in signs or not signs:
             continue
-        kind = "stop" if "stop" in found else "give_way"
+        kind = "stop" if "stop" in signs else "give_way"
         for name, lane in sorted(lanes.items()):
             if lane.drivable and name.rpartition("_")[0] == edge:
                 rows.append(_signal_row(f"{kind} {edge}", kind, lane, lane.line.length, turns=None))

@@ -89,10 +89,10 @@ def read(probe: Probe) -> Recording:
         recording.conditions = parse_conditions(conditions, zip(*condition_rows.to_pydict().values(), strict=True))
     if (path / "data_log.parquet").is_file():
         log = (_dict_rows(path / "data_log.parquet", parquet.table(path / "data_log.parquet")) or [{}])[0]
-        counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
-        if counted is not None and counted != found:  # it is unknown which states are missing
+        n_stated, n_read = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
+        if n_stated is not None and n_stated != n_read:  # it is unknown which states are missing
             raise TraceError(
-                f"{path / 'actor_state.parquet'}: {found} rows, but data_log.parquet states {counted}: copy or "
+                f"{path / 'actor_state.parquet'}: {n_read} rows, but data_log.parquet states {n_stated}: copy or "
                 "convert the folder again"
             )
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
@@ -127,8 +127,8 @@ def _findings_before_conversion(path: Path) -> list[QualityFinding]:
     _require_columns_and_one_drive(path, rows, ("check_id", "severity", "message"))
     again = CHECKS_REPEATED_AT_READING if AS_RECORDED_KEY.encode() in (rows.schema.metadata or {}) else ()
     try:
-        found = [msgspec.convert(row, QualityFinding) for row in _dict_rows(path, rows)]
-        return validated_findings(path, [finding for finding in found if finding.check_id not in again])
+        findings = [msgspec.convert(row, QualityFinding) for row in _dict_rows(path, rows)]
+        return validated_findings(path, [finding for finding in findings if finding.check_id not in again])
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
 
@@ -149,9 +149,9 @@ def _typed_columns(path: Path, table: pa.Table, names: Iterable[str], kind: pa.D
 
 
 def _require_columns_and_one_drive(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
-    missing = [name for name in names if name not in table.schema.names]
-    if missing:
-        raise TraceError(f"{path}: no column {', '.join(missing)}: a canonical table needs {', '.join(names)}")
+    lacking = [name for name in names if name not in table.schema.names]
+    if lacking:
+        raise TraceError(f"{path}: no column {', '.join(lacking)}: a canonical table needs {', '.join(names)}")
     drives = pc.unique(_typed_column(path, table, "drive_id", pa.string())) if "drive_id" in table.schema.names else []
     if len(drives) > 1:
         raise TraceError(f"{path}: contains {len(drives)} drives: write one folder or file per drive")
@@ -178,8 +178,8 @@ def _read_states(path: Path) -> Recording:
     codes = {name: _word_codes(path, column, name) for name, column in texts.items()}
     egos: list[str] = []
     for column in _typed_columns(path, table, ("is_ego",), pa.bool_()).values():
-        chosen = pc.fill_null(column, fill_value=False)
-        egos = [i for i in pc.unique(ids.filter(chosen)).to_pylist() if i]
+        is_ego = pc.fill_null(column, fill_value=False)
+        egos = [i for i in pc.unique(ids.filter(is_ego)).to_pylist() if i]
     encoded = pc.dictionary_encode(pc.fill_null(ids, ""))
     actor = encoded.indices.to_numpy()
     t_ns = pc.fill_null(times, 0).to_numpy(zero_copy_only=False)
@@ -190,9 +190,11 @@ def _read_states(path: Path) -> Recording:
     if is_empty_frame.any() or lost_rows.any():
         recording.states = states.take(~(lost_rows | is_empty_frame))
     if lost_rows.any():
-        what, n_lost = f"{path.name}: rows without actor or time", int(lost_rows.sum())
-        recording.findings = [QualityFinding("dropped_row", "error", f"{what}: {n_lost}: they are not judged", n_lost)]
-        recording.lost_times = times_of_lost_rows(t_ns, timed, lost_rows, what)
+        description, n_lost = f"{path.name}: rows without actor or time", int(lost_rows.sum())
+        recording.findings = [
+            QualityFinding("dropped_row", "error", f"{description}: {n_lost}: they are not judged", n_lost)
+        ]
+        recording.lost_times = times_of_lost_rows(t_ns, timed, lost_rows, description)
     return recording
 
 
@@ -210,8 +212,8 @@ def _has_no_actor_values(table: pa.Table, n_rows: int) -> Mask:
     """Return for each row whether all columns on actors are NULL."""
     columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_WORDS_OF_STATE_COLUMN, "is_ego"}
     empty = [table[name].is_null().to_numpy() for name in sorted(columns)]
-    nothing: Mask = np.logical_and.reduce([np.ones(n_rows, np.bool_), *empty])
-    return nothing
+    is_empty: Mask = np.logical_and.reduce([np.ones(n_rows, np.bool_), *empty])
+    return is_empty
 
 
 def _word_codes(path: Path, column: pa.Array, name: str) -> Codes:

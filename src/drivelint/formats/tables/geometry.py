@@ -44,7 +44,7 @@ def convert_to_map_frame(states: States, mapping: Mapping) -> None:
                 log[east], log[north] = rotate_vectors(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _move_to_box_centre(states, mapping)
-    states.numbers = {ours: log.get(theirs, unknown_values) for theirs, ours in _COLUMN_OF_QUANTITY.items()}
+    states.numbers = {column: log.get(quantity, unknown_values) for quantity, column in _COLUMN_OF_QUANTITY.items()}
 
 
 def _move_to_box_centre(states: States, mapping: Mapping) -> None:

@@ -27,12 +27,12 @@ def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional
     """Return the required columns of a table and its available optional columns; all if none is given. Errors: those of `table`."""
     names = rows.schema.names
     required, optional = list(required), list(optional)
-    if missing := [name for name in required if name not in names]:
-        raise TraceError(f"{path}: no column {', '.join(missing)}: it needs {', '.join(required)}: get the log again")
-    chosen = [*required, *(name for name in optional if name in names)] or names
-    if twice := [name for name in chosen if names.count(name) > 1]:
+    if lacking := [name for name in required if name not in names]:
+        raise TraceError(f"{path}: no column {', '.join(lacking)}: it needs {', '.join(required)}: get the log again")
+    columns = [*required, *(name for name in optional if name in names)] or names
+    if twice := [name for name in columns if names.count(name) > 1]:
         raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
-    rows = rows.select(chosen)
+    rows = rows.select(columns)
     rows.validate(full=True)  # in a damaged file, offsets may point outside of the buffers
     return rows.combine_chunks()
 
@@ -48,8 +48,8 @@ def column_names_and_n_rows(path: Path) -> tuple[list[str], int]:
 
 def _read_from_open_file(path: Path, read_part: Callable[[pa.RecordBatchFileReader], T]) -> T:
     try:
-        with path.open("rb") as file, pa.ipc.open_file(pa.PythonFile(file)) as opened:
-            return read_part(opened)
+        with path.open("rb") as file, pa.ipc.open_file(pa.PythonFile(file)) as reader:
+            return read_part(reader)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(
             f"{path}: not readable in Arrow's file format: {' '.join(str(error).split())}: copy it again"

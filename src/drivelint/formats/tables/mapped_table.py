@@ -55,8 +55,8 @@ MAX_HEADING_RAD: Final = 4 * np.pi
 def accepts(probe: Probe) -> bool:
     """Return whether the file is Parquet, or text that is neither XML nor JSON."""
     head = probe.head
-    written = head.rstrip(b"\0")  # a file that was not written to its end may end in zero bytes
-    text = written if written.count(b"\n") > 1 else head
+    content = head.rstrip(b"\0")  # a file that was not written to its end may end in zero bytes
+    text = content if content.count(b"\n") > 1 else head
     return head.startswith(b"PAR1") or not (b"\0" in text or text.lstrip()[:1] in {b"<", b"{"})
 
 
@@ -95,11 +95,11 @@ def read_sheet(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> Recordi
 def _assumption_findings(name: str, mapping: Mapping) -> list[QualityFinding]:
     """Return findings on facts that come from the mapping, not from the log: sizes, and a left-handed frame."""
     findings = []
-    given = mappings.fields(mapping)
-    if any(side in given and given[side].value is not None for side in ("length", "width")):
+    fields_of_mapping = mappings.fields(mapping)
+    if any(side in fields_of_mapping and fields_of_mapping[side].value is not None for side in ("length", "width")):
         findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", f"size from the mapping {name!r}, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
-    if turned := [what for what, is_turned in turns.items() if is_turned]:
+    if turned := [statement for statement, is_turned in turns.items() if is_turned]:
         message = f"{' and '.join(turned)} changed in sign, because the frame of the log is left-handed according to the mapping {name!r}"
         findings.append(QualityFinding(TURNED_FRAME_CHECK, "info", message))
     return findings
@@ -107,12 +107,12 @@ def _assumption_findings(name: str, mapping: Mapping) -> list[QualityFinding]:
 
 def _refuse_if_most_rows_unread(path: Path, name: str, recording: Recording) -> None:
     """Raise `TraceError` if most rows cannot be read: the mapping is wrong, and the other rows would mislead."""
-    lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
-    kept = len(recording.states)
-    if lost > kept > 0:
+    n_lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
+    n_kept = len(recording.states)
+    if n_lost > n_kept > 0:
         why = next(finding.message for finding in recording.findings if finding.check_id in LOSS_CHECKS)
         raise TraceError(
-            f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right mapping with --mapping"
+            f"{path}: mapping {name!r} cannot read {n_lost} of {n_lost + n_kept} rows ({why}): give the right mapping with --mapping"
         )
 
 
@@ -135,11 +135,11 @@ def _fitting_mapping_and_sheet(path: Path) -> tuple[str, Mapping, Sheet]:
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
-    what = f"several mappings fit ({', '.join(name for name, _, _ in fits)})"
+    problem = f"several mappings fit ({', '.join(name for name, _, _ in fits)})"
     if not fits:
         shipped = ", ".join(mappings.shipped_mappings())
-        what = f"read as a table, no shipped mapping fits its columns (shipped: {shipped})"
-    raise TraceError(f"{path}: {what}: give a mapping with --mapping FILE|NAME; drivelint inspect drafts one")
+        problem = f"read as a table, no shipped mapping fits its columns (shipped: {shipped})"
+    raise TraceError(f"{path}: {problem}: give a mapping with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
 def _column_group_numbers(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
@@ -153,13 +153,13 @@ def _column_group_numbers(path: Path, name: str, mapping: Mapping, sheet: Sheet)
     if templates:
         shape = re.compile(re.escape(templates[0]).replace(re.escape(GROUP_PLACEHOLDER), r"(\d+)"))
         groups = sorted({match[1] for column in sheet.names if (match := shape.fullmatch(column))}, key=int) or ["1"]
-    needed = [column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups]
-    for column in needed:
+    needed_columns = [column.replace(GROUP_PLACEHOLDER, k) for column in columns for k in groups]
+    for column in needed_columns:
         count = sheet.names.count(column)
         if count == 0:
-            near = nearest_word(column, [unused for unused in sheet.names if unused not in needed])
-            known = f"did you mean {near!r}?" if near else f"known are {', '.join(sheet.names)}"
-            raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
+            near = nearest_word(column, [unused for unused in sheet.names if unused not in needed_columns])
+            suggestion = f"did you mean {near!r}?" if near else f"known are {', '.join(sheet.names)}"
+            raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {suggestion}")
         if count > 1:
             raise TraceError(f"{path}: the column {column!r} occurs {count} times: rename all but one")
     return groups
@@ -220,12 +220,12 @@ class _MappedTable:
         )
 
     def _has_position(self, group: str, n_rows: int) -> Mask:
-        placed = np.ones(n_rows, np.bool_)
+        has_position = np.ones(n_rows, np.bool_)
         for name in ("x", "y"):
             column = mappings.fields(self.mapping)[name].column
             if column is not None:
-                placed &= self.sheet.is_filled(column.replace(GROUP_PLACEHOLDER, group))
-        return placed
+                has_position &= self.sheet.is_filled(column.replace(GROUP_PLACEHOLDER, group))
+        return has_position
 
     def _lost_times(self, t_ns: Times, timed: Mask, lost_rows: Mask) -> list[LostTime]:
         """Return the time ranges of lost rows and of malformed lines, whose times are unknown."""
@@ -248,8 +248,8 @@ class _MappedTable:
                 not_finite |= odd
                 numbers[name] = values[keep]
         codes = {
-            name: self._word_codes(spec, allowed, group, n_rows)[keep]
-            for name, (spec, allowed) in mappings.word_mappings(self.mapping).items()
+            name: self._word_codes(spec, allowed_words, group, n_rows)[keep]
+            for name, (spec, allowed_words) in mappings.word_mappings(self.mapping).items()
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
@@ -366,13 +366,13 @@ class _MappedTable:
         lines = self.sheet.bad_lines
         if not lines:
             return
-        what = (
+        description = (
             f"{describe_places('line', lines, len(lines))}: the number of cells differs from the "
             f"{len(self.sheet.names)} cells of the header"
         )
         if n_rows == 0:
-            raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
-        message = f"{self.path.name}, {what}: not judged"
+            raise TraceError(f"{self.path}: {description}: no row is left; check the mapping's separator and skip_rows")
+        message = f"{self.path.name}, {description}: not judged"
         self.findings.append(QualityFinding("malformed_row", "error", message, len(lines)))
 
 

@@ -179,12 +179,14 @@ def shipped_mappings() -> list[str]:
 
 def refuse_unknown_mapping(name: str) -> None:
     """Raise `UsageError` if `name` is neither a file nor a shipped mapping; it proposes the most similar name."""
-    known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # also mappings of films
+    shipped = sorted(
+        file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml")
+    )  # also mappings of films
     if is_pipe_or_device(name):
         raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and give that file")
-    if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
-        meant = path_hint(Path(name)) if name.endswith(".toml") else ""
-        raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {meant or hint(name, known)}")
+    if not os.path.isfile(name) and name not in shipped:  # noqa: PTH113 - also of a name that is too long for a file
+        suggestion = path_hint(Path(name)) if name.endswith(".toml") else ""
+        raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {suggestion or hint(name, shipped)}")
 
 
 def load(name: str) -> tuple[str, Mapping]:
@@ -231,12 +233,12 @@ def fields(mapping: Mapping) -> dict[str, Field]:
 
 def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, ...]]]:
     """Return drivelint's column -> its translation in the mapping, and the allowed words."""
-    found = {
+    specs = {
         "actor_class": (mapping.actor_class, ACTOR_CLASSES),
         "indicator": (mapping.indicator, INDICATORS),
         "brake_light": (mapping.brake_light, BRAKE_LIGHTS),
     }
-    return {name: (spec, allowed) for name, (spec, allowed) in found.items() if spec is not None}
+    return {name: (spec, allowed_words) for name, (spec, allowed_words) in specs.items() if spec is not None}
 
 
 def needed_columns(mapping: Mapping) -> list[str]:
@@ -252,12 +254,14 @@ def refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> Non
     struct = next((part for part in parts if isinstance(part, type) and issubclass(part, msgspec.Struct)), None)
     if struct is None or isinstance(raw, list) != any(get_origin(part) is list for part in parts):
         return
-    known = {info.encode_name: info for info in msgspec.structs.fields(struct)}
+    field_by_key = {info.encode_name: info for info in msgspec.structs.fields(struct)}
     for table in raw if isinstance(raw, list) else [raw]:
         for key, value in table.items() if isinstance(table, dict) else ():
-            if key not in known:
-                raise UsageError(f"mapping {path}: unknown key {key_prefix + key!r}: {hint(key, known, cutoff=0.5)}")
-            refuse_unknown_keys(path, value, known[key].type, f"{key_prefix}{key}.")
+            if key not in field_by_key:
+                raise UsageError(
+                    f"mapping {path}: unknown key {key_prefix + key!r}: {hint(key, field_by_key, cutoff=0.5)}"
+                )
+            refuse_unknown_keys(path, value, field_by_key[key].type, f"{key_prefix}{key}.")
 
 
 def _component_types(kind: Any) -> tuple[Any, ...]:
@@ -270,11 +274,11 @@ def validate(path: Path, mapping: Mapping) -> None:
         raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
     for name, spec in fields(mapping).items():
         _validate_field(path, name, spec)
-    for is_wrong, what in _possible_contradictions(mapping, fields(mapping).keys()):
+    for is_wrong, contradiction in _possible_contradictions(mapping, fields(mapping).keys()):
         if is_wrong:
-            raise UsageError(f"mapping {path}: {what}")
-    for name, (choice, allowed) in word_mappings(mapping).items():
-        _validate_words(path, name, choice, allowed)
+            raise UsageError(f"mapping {path}: {contradiction}")
+    for name, (choice, allowed_words) in word_mappings(mapping).items():
+        _validate_words(path, name, choice, allowed_words)
 
 
 def _validate_field(path: Path, name: str, spec: Field) -> None:

@@ -55,14 +55,14 @@ def _read_from_open_file(path: Path, read_part: Callable[[pq.ParquetFile], T]) -
         with path.open("rb") as file:
             head = file.read(len(_MAGIC) * 8)
             if not head.startswith(_MAGIC):
-                what = f"it begins {head!r}" if head else "it is empty (0 bytes)"
-                raise TraceError(f"{path}: not Parquet: {what}: copy it again")
-            opened = pq.ParquetFile(file, page_checksum_verification=True)
+                beginning = f"it begins {head!r}" if head else "it is empty (0 bytes)"
+                raise TraceError(f"{path}: not Parquet: {beginning}: copy it again")
+            parquet_file = pq.ParquetFile(file, page_checksum_verification=True)
             _refuse_concatenated_files(path, file)
-            names = opened.schema_arrow.names
+            names = parquet_file.schema_arrow.names
             if twice := [name for name in names if names.count(name) > 1]:
                 raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
-            return read_part(opened)
+            return read_part(parquet_file)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
 

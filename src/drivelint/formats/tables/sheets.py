@@ -232,8 +232,8 @@ class ParquetSheet:
             return _nanoseconds_and_bad(*self.numbers_and_bad(name), factor=unit_ns)
         whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
         factor = int(unit_ns)
-        most = int(MAX_NS) // factor
-        beyond = (whole > most) | (whole < -most)  # the least integer has no absolute value
+        largest = int(MAX_NS) // factor
+        beyond = (whole > largest) | (whole < -largest)  # the least integer has no absolute value
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
     def describe_rows(self, rows: Indices) -> str:
@@ -264,5 +264,5 @@ def _nanoseconds_and_bad(values: Floats, bad: Mask, *, factor: float) -> tuple[T
     """Return values scaled to nanoseconds and rounded (8.3 s is 8,300,000,000 ns), and for each cell whether it is bad or too large."""
     with np.errstate(invalid="ignore", over="ignore"):
         scaled = np.rint(values * factor)
-        lost = bad | ~(np.abs(scaled) < MAX_NS)
-    return np.where(lost, 0.0, scaled).astype(np.int64), lost
+        is_bad = bad | ~(np.abs(scaled) < MAX_NS)
+    return np.where(is_bad, 0.0, scaled).astype(np.int64), is_bad

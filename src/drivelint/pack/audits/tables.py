@@ -84,7 +84,7 @@ def packed_file_names(results: ResultStore) -> list[str]:
     """Return the files of an audit that a pack contains: its settings, summary and rules, and all chunks of its tables."""
     return [
         *UNCHUNKED_FILES,
-        *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunk_ids(results)),
+        *(chunk_name(table, chunk_id) for table in (*TABLES, "receipts") for chunk_id in chunk_ids(results)),
     ]
 
 
@@ -92,17 +92,17 @@ def evidence_values_of_audit(
     folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]
 ) -> dict[str, Any]:
     """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
-    counted = summary_of_all_drives(con, 0)
+    summary = summary_of_all_drives(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
     not_judged = con.execute(statement("audit/not_judged")).to_arrow_table().to_pylist()
     return {
         "audit": audit.audit_json,
-        "n_drives": counted.n_drives,
-        "n_copies": counted.copies + counted.copies_not_judged,
-        "n_lossy": counted.lossy,
-        "n_findings": sum(counted.findings.values()),
+        "n_drives": summary.n_drives,
+        "n_copies": summary.copies + summary.copies_not_judged,
+        "n_lossy": summary.lossy,
+        "n_findings": sum(summary.findings.values()),
         "not_judged": not_judged,
-        "exit": {"code": int(counted.exit_code(fail_on, strict=False)), "fail_on": fail_on},
+        "exit": {"code": int(summary.exit_code(fail_on, strict=False)), "fail_on": fail_on},
         **evidence_values_of_rules(folder, rules),
         "outputs": sha256_by_path(folder, AUDIT_FOLDER),
     }
@@ -112,11 +112,11 @@ def contradicted_summary_keys(
     con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]
 ) -> list[str]:
     """Return the keys of `summary.json` that contradict the tables."""
-    counted = summary_of_all_drives(con, 0).file_content() | {"robust": bool(audit.settings["robustness"])}
+    values = summary_of_all_drives(con, 0).file_content() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
         key
-        for key in (counted.keys() | packed_summary.keys()) - _SUMMARY_KEYS_NOT_FROM_TABLES
-        if packed_summary.get(key) != counted.get(key)
+        for key in (values.keys() | packed_summary.keys()) - _SUMMARY_KEYS_NOT_FROM_TABLES
+        if packed_summary.get(key) != values.get(key)
     )
 
 
@@ -127,7 +127,7 @@ def receipt_problems(results: ResultStore, rules: pa.Table, *, same_libraries: b
     """
     stable = rules.filter(pc.equal(rules["status"], "stable"))["rule_id"].combine_chunks()
     schemas = {table: rows.schema for table, rows in empty_tables().items()}
-    seen: set[str] = set()
+    checked_keys: set[str] = set()
     for chunk in chunk_ids(results):
         with TemporaryDirectory(prefix="drivelint-pack-") as home:
             parts = {}
@@ -137,38 +137,40 @@ def receipt_problems(results: ResultStore, rules: pa.Table, *, same_libraries: b
         receipts = {key: part.to_pylist() for key, part in parts.pop("receipts").items()}
         for key in sorted({*receipts, *(key for part in parts.values() for key in part)}):
             rows_of_key = {table: parts[table].get(key, schemas[table].empty_table()) for table in TABLES}
-            is_one = len(receipts.get(key, ())) == rows_of_key["drives"].num_rows == 1 and key not in seen
-            seen.add(key)
+            is_one = len(receipts.get(key, ())) == rows_of_key["drives"].num_rows == 1 and key not in checked_keys
+            checked_keys.add(key)
             if not is_one:
                 yield Problem(
                     "receipts do not match the tables", f"{key}: a drive has one receipt and one row in drives"
                 )
                 continue
-            for what in _differing_receipt_fields(
+            for field in _differing_receipt_fields(
                 receipts[key][0], receipt_fields(rows_of_key, stable), same_libraries=same_libraries
             ):
-                yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
+                yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {field}")
 
 
 def _differing_receipt_fields(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
     """Return the fields of a receipt that differ from `due`, the values computed from the drive's rows."""
-    told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
-    if told["status"] == "quarantined" and due["status"] == "refused":
+    values = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
+    if values["status"] == "quarantined" and due["status"] == "refused":
         due |= {"status": "quarantined"}
-        if str(due["reason"]).endswith(str(told["reason"])):  # the row has the log's name in front
-            due |= {"reason": told["reason"]}
+        if str(due["reason"]).endswith(str(values["reason"])):  # the row has the log's name in front
+            due |= {"reason": values["reason"]}
     if not same_libraries:
         due.pop("rows_sha256")
-    return sorted(name for name, value in due.items() if told.get(name) != value)
+    return sorted(name for name, value in due.items() if values.get(name) != value)
 
 
 def _rows_by_drive_key(rows: pa.Table) -> dict[str, pa.Table]:
     """Return key -> its rows. The rows of a key are contiguous, as in chunks."""
-    counted = pc.value_counts(rows["key"]).to_pylist()
+    key_counts = pc.value_counts(rows["key"]).to_pylist()
     ends = [0]
-    for each in counted:
-        ends.append(ends[-1] + each["counts"])
-    return {each["values"]: rows.slice(a, b - a) for each, (a, b) in zip(counted, pairwise(ends), strict=True)}
+    for key_count in key_counts:
+        ends.append(ends[-1] + key_count["counts"])
+    return {
+        key_count["values"]: rows.slice(a, b - a) for key_count, (a, b) in zip(key_counts, pairwise(ends), strict=True)
+    }
 
 
 def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
@@ -184,8 +186,8 @@ def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> 
         counted_id=counted_finding_of_each_finding_sql(COUNTED_PREFIX),
         least_share=str(LEAST_SHARE_OF_COPIES_FOR_CERTAIN_FINDING),
     )
-    found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
-    return found
+    worst: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
+    return worst
 
 
 def n_packed_findings(evidence: dict[str, Any]) -> int:
@@ -215,11 +217,11 @@ def packed_drives(
             con.execute(f"FROM {table} WHERE key = ?", [key]).to_arrow_table().to_pylist()
             for table in ("receipts", "drives")
         )
-        mine = [{name: value for name, value in row.items() if name != "key"} for row in rows]
+        finding_rows = [{name: value for name, value in row.items() if name != "key"} for row in rows]
         about = {name: value for name, value in drive.items() if name not in {"key", "log", "tags"}}
         result = Result(
             verdicts=arrow_schemas()["verdict"].empty_table(),
-            findings=pa.Table.from_pylist(mine, schema=arrow_schemas()["finding"]),
+            findings=pa.Table.from_pylist(finding_rows, schema=arrow_schemas()["finding"]),
             drives=pa.Table.from_pylist([about], schema=arrow_schemas()["drive"]),
             rules=rules,
             fail_on=str(audit.audit_json["fail_on"]),
@@ -233,11 +235,11 @@ def equivalent_check_request(audit: Audit, receipt: Row | None, rules_dirs: tupl
     options = msgspec.json.decode(
         (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
     )
-    given = {each.name: getattr(options, each.name) for each in fields(DriveInput)}
+    values = {field.name: getattr(options, field.name) for field in fields(DriveInput)}
     settings = judge_settings(audit)
     traces = {} if receipt is None else {receipt["drive_id"]: receipt["log"]}
     return RunRequest(
-        **given,
+        **values,
         traces=traces,
         profiles=settings.profiles,
         params=settings.params,
@@ -268,14 +270,14 @@ def given_logs_by_key(
     there = [path for path in expand_traces(list(map(str, log_paths))) if why_unreadable(path) is None]
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
     by_digest = group_rows(likely, lambda path: identify(path).sha256)
-    found = {
+    path_by_key = {
         key: max(by_digest[digest], key=lambda path: path.name == PurePath(log).name)
         for key, log, digest, _ in receipts
         if digest in by_digest
     }
-    if not found:
+    if not path_by_key:
         raise UsageError(f"--trace {log_paths[0]}: no log there belongs to a drive with a finding in the pack")
-    return found
+    return path_by_key
 
 
 def drive_request_with_present_paths(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:

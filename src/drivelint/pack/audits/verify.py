@@ -102,10 +102,10 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
             return [Problem("result not readable", str(error))], "", "", []
         if wrong:
             return wrong, "not judged again", "", []
-        given = tables.given_logs_by_key(con, findings, request.traces)
+        logs = tables.given_logs_by_key(con, findings, request.traces)
         try:
             for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-                wrong += _problems_of_drive(pack, drive, given.get(drive.key), request.map)
+                wrong += _problems_of_drive(pack, drive, logs.get(drive.key), request.map)
         except msgspec.MsgspecError as error:
             wrong.append(Problem("receipts not readable", str(error)))
         return wrong, _judged_again_phrase(pack), outcome, _notes_on_unexamined(pack)
@@ -114,9 +114,9 @@ def verify_audit_pack(request: VerifyRequest) -> tuple[list[Problem], str, str, 
 def _problems_of_tables(pack: _AuditPack) -> Iterator[Problem]:
     """Yield the contradictions between the tables, receipts, rules and summary of the audit."""
     place = pack.folder / tables.AUDIT_FOLDER
-    told = pack.audit.audit_json
-    said = json.loads((place / SUMMARY_FILE).read_bytes())
-    for key in tables.contradicted_summary_keys(pack.con, pack.audit, said):
+    audit_json = pack.audit.audit_json
+    summary = json.loads((place / SUMMARY_FILE).read_bytes())
+    for key in tables.contradicted_summary_keys(pack.con, pack.audit, summary):
         yield Problem("summary.json does not match the tables", key)
     yield from tables.receipt_problems(LocalFolder(place), pack.rules, same_libraries=_has_same_pyarrow(pack))
     if pack.rules_by_id is not None:
@@ -124,7 +124,7 @@ def _problems_of_tables(pack: _AuditPack) -> Iterator[Problem]:
         if why := consistency.rules_contradiction(list(pack.rules_by_id.values()), pack.rules, check_request):
             yield Problem("audit.json does not match the result", why)
     settings = replace(tables.judge_settings(pack.audit), rules_dirs=pack.rules_dirs)
-    if told["versions"] == versions() and told["run_id"] != run_id(settings):
+    if audit_json["versions"] == versions() and audit_json["run_id"] != run_id(settings):
         yield Problem("audit.json does not match the result", "run_id")
 
 
@@ -133,27 +133,29 @@ def _problems_of_evidence(pack: _AuditPack, findings: Sequence[Row]) -> Iterator
     folder, evidence = pack.folder, pack.evidence
     due = tables.evidence_values_of_audit(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = max(due["n_findings"] - tables.n_packed_findings(evidence), 0)
-    said = [{key: row[key] for key in tables.FINDING_KEYS} for row in findings]
-    keys = consistency.differing_evidence_keys(evidence, due, said, pack.rules.to_pylist())
+    finding_keys = [{key: row[key] for key in tables.FINDING_KEYS} for row in findings]
+    keys = consistency.differing_evidence_keys(evidence, due, finding_keys, pack.rules.to_pylist())
     inputs = evidence["inputs"] or {"traces": {}, "maps": {}}
     of_findings = {row["key"] for row in findings}
     if evidence["inputs"] is not None and inputs["traces"].keys() != of_findings:
         keys.append("inputs")
     for key in [*keys, *sorted(evidence.keys() - due.keys() - _UNDERIVED_EVIDENCE_KEYS)]:
         yield Problem("evidence.json does not match the result", key)
-    named = {EVIDENCE_FILE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
+    files_of_evidence = {EVIDENCE_FILE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
     places = [
         *evidence["rules_dirs"],
         *evidence["mappings"].values(),
         *inputs["traces"].values(),
         *inputs["maps"].values(),
     ]
-    kept = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
+    input_folders = tuple(f"{DATA}/{name}/" for name in ("mapping", "rules_dirs", "inputs"))
     of_audit = {
         f"{tables.AUDIT_FOLDER}/{name}" for name in tables.packed_file_names(LocalFolder(folder / tables.AUDIT_FOLDER))
     }
-    named -= {name for name in due["outputs"] if name not in of_audit}
-    yield from consistency.unnamed_files(folder, evidence, named, [place for place in places if place.startswith(kept)])
+    files_of_evidence -= {name for name in due["outputs"] if name not in of_audit}
+    yield from consistency.unnamed_files(
+        folder, evidence, files_of_evidence, [place for place in places if place.startswith(input_folders)]
+    )
 
 
 def _problems_of_statement(folder: Path, due: bytes) -> list[Problem]:
@@ -290,7 +292,7 @@ def _judged_again_phrase(pack: _AuditPack) -> str:
 
 def _notes_on_unexamined(pack: _AuditPack) -> list[str]:
     """Return notes on results that were not compared with the logs, on other versions, and on rules that are not drivelint's own."""
-    notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
+    notes, evidence, audit_versions = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
         ran = (
             f"{plural(pack.n_run, 'finding')} of theirs gave the numbers from the rows in the pack"
@@ -298,24 +300,24 @@ def _notes_on_unexamined(pack: _AuditPack) -> list[str]:
             else "the SQL of their findings was not run: this drivelint has other rules"
         )
         notes.append(f"{plural(pack.n_alone, 'drive')} without a log: judged again only with --trace and --map; {ran}")
-    known = (
+    assurance = (
         "not judged again; their rows have the hashes in the receipts"
         if _has_same_pyarrow(pack)
         else "not judged again; the hashes of their rows were not compared, as another pyarrow wrote them"
     )
     ((n_refused,),) = pack.con.execute("SELECT count(*) FROM receipts WHERE status <> 'judged'").fetchall()
     if rest := evidence["n_drives"] - n_refused - pack.n_copies - pack.n_judged - pack.n_alone:
-        notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {known}")
+        notes.append(f"{plural(rest, 'drive')} without a finding in the pack: {assurance}")
     if pack.n_copies:
-        notes.append(f"{plural(pack.n_copies, 'log')} with the content of another log, counted once: {known}")
+        notes.append(f"{plural(pack.n_copies, 'log')} with the content of another log, counted once: {assurance}")
     if left := evidence["findings_left_out"]:
         notes.append(f"{plural(left, 'finding')} of less weight: no rows in the pack")
     if evidence["not_judged"]:
         names = name_list([row["log"] for row in evidence["not_judged"]], 3)
         of = f" ({plural(n_refused, 'drive')})" if n_refused > len(evidence["not_judged"]) else ""
         notes.append(f"not judged when it was audited, nor now: {names}{of}")
-    if changed := sorted(name for name, value in versions().items() if told.get(name) != value):
-        notes.append(f"audited by other versions of {', '.join(changed)}")
+    if other_versions := sorted(name for name, value in versions().items() if audit_versions.get(name) != value):
+        notes.append(f"audited by other versions of {', '.join(other_versions)}")
     if pack.packed_by != __version__:
         notes.append(f"packed by drivelint {pack.packed_by}, and this is {__version__}")
     if evidence["rules_dirs"]:

@@ -44,8 +44,8 @@ def _write_payload_and_return_evidence(pack_folder: Path, request: PackRequest) 
         (pack_folder / tables.AUDIT_FOLDER / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(request.folder / name, pack_folder / tables.AUDIT_FOLDER / name)
     with open_audit_in_evidence_pack(pack_folder / tables.AUDIT_FOLDER) as (con, audit):
-        said = json.loads((pack_folder / tables.AUDIT_FOLDER / SUMMARY_FILE).read_bytes())
-        if wrong := tables.contradicted_summary_keys(con, audit, said):
+        summary = json.loads((pack_folder / tables.AUDIT_FOLDER / SUMMARY_FILE).read_bytes())
+        if wrong := tables.contradicted_summary_keys(con, audit, summary):
             raise UsageError(f"{request.folder}: its summary and its tables do not agree ({wrong[0]}): audit again")
         rules = pq.read_table(pack_folder / tables.AUDIT_FOLDER / RULES_FILE)
         findings = tables.worst_findings(con, request.findings)
@@ -53,27 +53,29 @@ def _write_payload_and_return_evidence(pack_folder: Path, request: PackRequest) 
         loaded_rules = reproduction.rules_of_table(rules, dirs)
         copy_rule_files(loaded_rules, pack_folder)
         inputs = _InputCopier(pack_folder, with_inputs=request.with_inputs)
-        given = tables.given_logs_by_key(con, findings, request.traces)
-        found = []
+        logs = tables.given_logs_by_key(con, findings, request.traces)
+        entries = []
         for drive in tables.packed_drives(con, audit, rules, findings, dirs):
-            check_request = tables.drive_request_with_present_paths(drive, given.get(drive.key), request.map)
+            check_request = tables.drive_request_with_present_paths(drive, logs.get(drive.key), request.map)
             inputs.copy_inputs_of_drive(drive.key, check_request)
-            found += _write_evidence_and_return_finding_entries(pack_folder, drive, check_request, loaded_rules)
+            entries += _write_evidence_and_return_finding_entries(pack_folder, drive, check_request, loaded_rules)
         order = {(row["key"], row["finding_id"]): no for no, row in enumerate(findings)}
-        told = {
+        evidence = {
             "evidence": contents.AUDIT_FORMAT_VERSION,
             **tables.evidence_values_of_audit(pack_folder, con, audit, rules.to_pylist()),
             "packed_with": contents.library_versions(),
             "mappings": inputs.mappings,
             "rules_dirs": copy_rules_dirs(dirs, pack_folder),
             "inputs": {"traces": inputs.traces, "maps": inputs.maps} if request.with_inputs else None,
-            "findings": sorted(found, key=lambda row: order[row["key"], row["finding_id"]]),
+            "findings": sorted(entries, key=lambda row: order[row["key"], row["finding_id"]]),
         }
-    told["findings_left_out"] = 0 if request.findings is None else max(told["n_findings"] - request.findings, 0)
+    evidence["findings_left_out"] = 0 if request.findings is None else max(evidence["n_findings"] - request.findings, 0)
     there = {path.relative_to(request.folder).parts[0] for path in request.folder.rglob("*") if path.is_file()}
-    told["left_out"] = sorted(name for name in there - {Path(name).parts[0] for name in names} if name[0] != ".")
-    (pack_folder / contents.EVIDENCE_FILE).write_bytes((json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode())
-    return told
+    evidence["left_out"] = sorted(name for name in there - {Path(name).parts[0] for name in names} if name[0] != ".")
+    (pack_folder / contents.EVIDENCE_FILE).write_bytes(
+        (json.dumps(evidence, indent=2, ensure_ascii=False) + "\n").encode()
+    )
+    return evidence
 
 
 def _write_evidence_and_return_finding_entries(
@@ -85,8 +87,8 @@ def _write_evidence_and_return_finding_entries(
     for name, files in evidence.items():
         if isinstance(files, dict):
             write_files(files, pack_folder / place / name, pack_folder)
-    told = contents.finding_entries(drive.result.findings.to_pylist(), evidence, place)
-    return [{"key": drive.key, **row} for row in told]
+    entries = contents.finding_entries(drive.result.findings.to_pylist(), evidence, place)
+    return [{"key": drive.key, **row} for row in entries]
 
 
 class _InputCopier:

@@ -49,8 +49,8 @@ def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float
     for opener in OPENERS:
         if opener.accepts(name):
             return opener.open(name, SourceOptions(folder, idle_s, every_s))
-    known = ", ".join(opener.label for opener in OPENERS)
-    raise UsageError(f"{name}: no source of this kind is known: use {known}")
+    labels = ", ".join(opener.label for opener in OPENERS)
+    raise UsageError(f"{name}: no source of this kind is known: use {labels}")
 
 
 def _open_mcap(name: str, options: SourceOptions) -> Source:

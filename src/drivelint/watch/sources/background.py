@@ -48,8 +48,8 @@ class BackgroundReader(Generic[T]):
         """Return the items since the last call; empty after `timeout_s`; None: the generator has ended. Errors: as the generator."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
-            if found := self._take_waiting():
-                return found
+            if items := self._take_waiting():
+                return items
             if self._ended and self._error is not None:
                 raise self._error
             return None if self._ended else []
@@ -67,11 +67,11 @@ class BackgroundReader(Generic[T]):
         self._thread.join(timeout=10 * STOP_CHECK_PERIOD_S)
 
     def _take_waiting(self) -> list[T]:
-        found = list(self._waiting)
+        items = list(self._waiting)
         self._waiting.clear()
         self._bytes = 0
         self._changed.notify_all()
-        return found
+        return items
 
     def _read_items(self) -> None:
         try:

@@ -39,13 +39,13 @@ def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]
     while True:
         try:
             if _IS_LINUX:
-                data, told, _, sender = receiver.recvmsg(MOST_DATAGRAM_BYTES, _ANCILLARY_BYTES)
+                data, ancillary, _, sender = receiver.recvmsg(MOST_DATAGRAM_BYTES, _ANCILLARY_BYTES)
             else:
-                (data, sender), told = receiver.recvfrom(MOST_DATAGRAM_BYTES), []
+                (data, sender), ancillary = receiver.recvfrom(MOST_DATAGRAM_BYTES), []
         except TimeoutError:
             yield None
             continue
-        at_ns, dropped = _time_and_drops(told)
+        at_ns, dropped = _time_and_drops(ancillary)
         # only if the system counts its drops, it is certain that no other datagram was lost on this machine
         yield Datagram(data, sender, at_ns, dropped, local=_IS_LINUX and _is_local(sender))
 

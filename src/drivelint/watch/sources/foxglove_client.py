@@ -61,14 +61,14 @@ class FoxgloveClient:
 
         Errors: `TraceError` if no such server answers.
         """
-        found = self._reader.take(timeout_s)
-        return None if found is None else [message for messages in found for message in messages]
+        batches = self._reader.take(timeout_s)
+        return None if batches is None else [message for messages in batches for message in messages]
 
     def notes(self) -> list[str]:
         """Return the new notes on the server: its status, channels that are not read, and the wait for its start."""
-        found = list(self._notes)
-        del self._notes[: len(found)]  # the thread may have added more
-        return found
+        new_notes = list(self._notes)
+        del self._notes[: len(new_notes)]  # the thread may have added more
+        return new_notes
 
     def close(self) -> list[LiveMessage]:
         """Close the connection, and return the messages that were not taken. May be called twice."""
@@ -85,11 +85,11 @@ class FoxgloveClient:
             stack.enter_context(suppress(WebSocketException, OSError))
             while not patience.is_over:
                 try:
-                    found = self._handle_message(ws, ws.recv(timeout=STOP_CHECK_PERIOD_S))
+                    messages = self._handle_message(ws, ws.recv(timeout=STOP_CHECK_PERIOD_S))
                 except TimeoutError:
-                    found = []
-                yield found
-                if found:
+                    messages = []
+                yield messages
+                if messages:
                     patience.restart()
 
     def _open_connection(self, stack: ExitStack) -> Generator[list[LiveMessage], None, ClientConnection]:
@@ -98,7 +98,7 @@ class FoxgloveClient:
         from websockets.sync.client import connect
         from websockets.typing import Subprotocol
 
-        offered = [Subprotocol(each) for each in SUBPROTOCOLS]
+        offered = [Subprotocol(name) for name in SUBPROTOCOLS]
         patience, is_told = IdleTimeout(self._idle_s), False
         while True:
             try:
@@ -154,16 +154,16 @@ class FoxgloveClient:
     def _subscribe_to_channels(self, ws: ClientConnection, channels: list[dict[str, Any]]) -> None:
         """Subscribe to the channels that drivelint reads. The id of a subscription is never reused."""
         new = []
-        for each in channels:
-            if each["id"] in self._by_channel:
+        for channel in channels:
+            if channel["id"] in self._by_channel:
                 continue
-            if not is_watched(each["schemaName"]):
-                self._unread.add(each["topic"])
+            if not is_watched(channel["schemaName"]):
+                self._unread.add(channel["topic"])
                 continue
             number = len(self._by_subscription)
-            self._by_subscription[number] = _live_channel(each)
-            self._by_channel[each["id"]] = number
-            new.append({"id": number, "channelId": each["id"]})
+            self._by_subscription[number] = _live_channel(channel)
+            self._by_channel[channel["id"]] = number
+            new.append({"id": number, "channelId": channel["id"]})
         if new:
             ws.send(json.dumps({"op": "subscribe", "subscriptions": new}))
         elif not self._by_subscription and channels:
@@ -171,7 +171,7 @@ class FoxgloveClient:
 
 
 def _content_bytes(messages: Sequence[LiveMessage]) -> int:
-    return sum(len(each.content) for each in messages)
+    return sum(len(message.content) for message in messages)
 
 
 def _live_channel(advertisement: dict[str, Any]) -> LiveChannel:

@@ -43,17 +43,17 @@ class FoxgloveSource(WindowFileSource):
         self._client = FoxgloveClient(uri, idle_s=idle_s)
         base = re.sub(r"[^\w.-]+", "-", uri.partition("://")[2]).strip("-.") or "live"
         names = (base if n == 1 else f"{base}_{n}" for n in count(1))
-        self.recording = next(each for name in names if not (each := folder / f"{name}.mcap").exists())
+        self.recording = next(path for name in names if not (path := folder / f"{name}.mcap").exists())
         self._writer: McapRecording | None = None
         self._reader = McapSource(self.recording, idle_s=None)
         self._closed = False
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
         """See `Source`."""
-        found = self._client.take(timeout_s)
-        if not found:
-            return None if found is None else []
-        self._write_to_recording(found)
+        messages = self._client.take(timeout_s)
+        if not messages:
+            return None if messages is None else []
+        self._write_to_recording(messages)
         return self._reader.read(0.0)
 
     def _write_to_recording(self, messages: Sequence[LiveMessage]) -> None:

@@ -73,15 +73,15 @@ class GrowingFile:
         return data
 
     def _refuse_replaced_or_truncated(self, file: FileIO) -> None:
-        opened = os.fstat(file.fileno())
+        status = os.fstat(file.fileno())
         try:
             there = self.path.stat()
         except FileNotFoundError:
             there = None
-        if there is None or not os.path.samestat(opened, there):
-            what = "taken away" if there is None else "replaced by another file"
-        elif opened.st_size < self.offset:
-            what = f"truncated to {opened.st_size} of {self.offset} bytes"
+        if there is None or not os.path.samestat(status, there):
+            change = "taken away" if there is None else "replaced by another file"
+        elif status.st_size < self.offset:
+            change = f"truncated to {status.st_size} of {self.offset} bytes"
         else:
             return
-        raise TraceError(f"{self.path}: the log was {what} while it was watched: watch it again")
+        raise TraceError(f"{self.path}: the log was {change} while it was watched: watch it again")

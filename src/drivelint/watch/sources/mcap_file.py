@@ -55,42 +55,42 @@ class McapSource(WindowFileSource):
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
         """See `Source`."""
         until = time.monotonic() + timeout_s
-        found: list[Frame] = []
+        frames_read: list[Frame] = []
         size = 0
         while not self._ended and size < MOST_BYTES_PER_READ:
-            data = self._file.read(0.0 if found else max(until - time.monotonic(), 0.0))
+            data = self._file.read(0.0 if frames_read else max(until - time.monotonic(), 0.0))
             if data:
                 frames = self._frames_of_records(self._stream.parse(data))
-                found += frames
+                frames_read += frames
                 size += sum(frame.size for frame in frames)
             elif data is not None:
                 break
             self._ended = data is None or self._stream.ended
             if time.monotonic() >= until:
                 break
-        return None if self._ended and not found else found
+        return None if self._ended and not frames_read else frames_read
 
     def _frames_of_records(self, records: Iterable[MessageRecord | DamagedChunk]) -> list[Frame]:
-        found = []
-        for each in records:
-            if isinstance(each, DamagedChunk):
-                found.append(Frame(self._last_ns, (self._count, each), len(each.record)))
+        frames = []
+        for record in records:
+            if isinstance(record, DamagedChunk):
+                frames.append(Frame(self._last_ns, (self._count, record), len(record.record)))
                 continue
-            schema = self._schema_name(each.channel)
+            schema = self._schema_name(record.channel)
             if not is_watched(schema):
                 continue
-            if each.log_ns <= LATEST_CREDIBLE_NS:  # a later time is malformed
-                self._last_ns = each.log_ns
-            numbered = NumberedMessage(self._count, each)
+            if record.log_ns <= LATEST_CREDIBLE_NS:  # a later time is malformed
+                self._last_ns = record.log_ns
+            numbered = NumberedMessage(self._count, record)
             self._count += 1
             if schema in OSI_SCHEMAS:
-                self._first.setdefault(each.channel, numbered)
+                self._first.setdefault(record.channel, numbered)
             self._pending.append(numbered)
-            self._pending_bytes += len(each.record)
+            self._pending_bytes += len(record.record)
             while self._pending_bytes > MOST_PENDING_BYTES:
                 self._move_oldest_pending_to_memory()
-            found.append(Frame(self._last_ns, numbered, len(each.record)))
-        return found
+            frames.append(Frame(self._last_ns, numbered, len(record.record)))
+        return frames
 
     def _schema_name(self, channel: int) -> str:
         schema = self._stream.schemas.get(self._stream.channels[channel].schema_id)
@@ -98,8 +98,8 @@ class McapSource(WindowFileSource):
 
     def notes(self) -> Sequence[str]:
         """See `Source`."""
-        found, self._stream.notes = self._stream.notes, []
-        return found
+        new_notes, self._stream.notes = self._stream.notes, []
+        return new_notes
 
     def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:
         """See `Source`."""
@@ -112,22 +112,22 @@ class McapSource(WindowFileSource):
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
             # the memory of a scene may contain entities that were replaced since the start of the last window
-            kept = [
-                each
-                for each in self._memories.values()
-                if not (may_omit_earlier_data and isinstance(each, SceneMemory))
+            memories = [
+                item
+                for item in self._memories.values()
+                if not (may_omit_earlier_data and isinstance(item, SceneMemory))
             ]
-            held = [each for memory in kept for each in memory.current_messages()]
-            for numbered in sorted(held, key=lambda each: each.number):
+            current = [item for memory in memories for item in memory.current_messages()]
+            for numbered in sorted(current, key=lambda item: item.number):
                 if numbered.number < begin:
                     writer.add(numbered.message)
-            for number, each in records:
-                if isinstance(each, DamagedChunk):
-                    writer.add_damaged_chunk(each)
+            for number, item in records:
+                if isinstance(item, DamagedChunk):
+                    writer.add_damaged_chunk(item)
                     continue
-                is_first = each.channel not in begun
-                begun.add(each.channel)
-                writer.add(self._with_static_content(number, each) if is_first else each)
+                is_first = item.channel not in begun
+                begun.add(item.channel)
+                writer.add(self._with_static_content(number, item) if is_first else item)
             writer.finish()
 
     def _move_oldest_pending_to_memory(self) -> None:

@@ -62,7 +62,7 @@ class SceneMemory:
         try:
             entities, deletions = self._codec.entities_and_deletions(numbered.message.content)
             updates = [(self._codec.id_time_lifetime(content), content) for content in entities]
-            gone = [(self._codec.deleted_id_and_time(content), content) for content in deletions]
+            deleted = [(self._codec.deleted_id_and_time(content), content) for content in deletions]
         except (ValueError, TypeError, KeyError, AttributeError):
             return
         log_ns = numbered.message.log_ns
@@ -72,7 +72,7 @@ class SceneMemory:
             track.updates.append(_EntityUpdate(numbered, content, t_ns, t_ns + lifetime if lifetime > 0 else None))
             track.is_gone = False
             self._latest_ns = max(self._latest_ns, t_ns)
-        for (entity_id, stamp), content in gone:
+        for (entity_id, stamp), content in deleted:
             self._apply_deletion(entity_id, stamp or self._latest_ns, _Deletion(numbered, content))
 
     def _apply_deletion(self, entity_id: Any, t_ns: int, deletion: _Deletion) -> None:
@@ -116,33 +116,33 @@ class _ProtobufCodec:
 
     def entities_and_deletions(self, data: bytes) -> tuple[list[bytes], list[bytes]]:
         """Return entities and deletions. Errors: `ValueError`."""
-        found: dict[int, list[bytes]] = {_ENTITIES: [], _DELETIONS: []}
-        for each in fields(data):
-            if each.number in found:
-                found[each.number].append(data[each.start : each.end])
-        return found[_ENTITIES], found[_DELETIONS]
+        parts: dict[int, list[bytes]] = {_ENTITIES: [], _DELETIONS: []}
+        for item in fields(data):
+            if item.number in parts:
+                parts[item.number].append(data[item.start : item.end])
+        return parts[_ENTITIES], parts[_DELETIONS]
 
     def id_time_lifetime(self, entity: bytes) -> tuple[bytes, int, int]:
         """Return id, time and lifetime of an entity; 0 for a missing time or lifetime."""
-        spans = {each.number: entity[each.start : each.end] for each in fields(entity)}
+        spans = {item.number: entity[item.start : item.end] for item in fields(entity)}
         return spans.get(_ID, b""), _time_ns(spans.get(_TIMESTAMP, b"")), _time_ns(spans.get(_LIFETIME, b""))
 
     def deleted_id_and_time(self, deletion: bytes) -> tuple[bytes | None, int]:
         """Return the id that a deletion deletes (None: all ids), and its time."""
-        found = {each.number: each for each in fields(deletion)}
-        spans = {number: deletion[each.start : each.end] for number, each in found.items()}
-        every = 2 in found and found[2].value == _DELETE_ALL
+        item_by_number = {item.number: item for item in fields(deletion)}
+        spans = {number: deletion[item.start : item.end] for number, item in item_by_number.items()}
+        every = 2 in item_by_number and item_by_number[2].value == _DELETE_ALL
         return None if every else spans.get(_ID, b""), _time_ns(spans.get(_TIMESTAMP, b""))
 
     def encode(self, entities: list[bytes], deletions: list[bytes]) -> bytes:
         """Return a message with these entities and deletions."""
         return b"".join(
-            [*(nested(_DELETIONS, each) for each in deletions), *(nested(_ENTITIES, each) for each in entities)]
+            [*(nested(_DELETIONS, part) for part in deletions), *(nested(_ENTITIES, part) for part in entities)]
         )
 
 
 def _time_ns(data: bytes) -> int:
-    parts = {each.number: each.value for each in fields(data)}
+    parts = {item.number: item.value for item in fields(data)}
     return signed_integer(parts.get(1, 0)) * _NS_PER_S + signed_integer(parts.get(2, 0))
 
 

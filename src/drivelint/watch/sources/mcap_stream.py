@@ -92,18 +92,18 @@ class McapStream:
         Errors: `TraceError` if the file is no MCAP file, or has a chunk that no reader accepts.
         """
         self._buffer += data
-        found: list[MessageRecord | DamagedChunk] = []
+        records: list[MessageRecord | DamagedChunk] = []
         if self._magic_is_read or self._try_to_read_magic():
             while (record := self._next_record()) is not None:
                 at = self._at + self._place - len(record)
                 try:
-                    found += self._read_record(record, at)
+                    records += self._read_record(record, at)
                 except (struct.error, McapError, ValueError) as error:
                     self._stop_reading(at, f"a record that cannot be read ({error})")
         del self._buffer[: self._place]
         self._at += self._place
         self._place = 0
-        return found
+        return records
 
     def _try_to_read_magic(self) -> bool:
         head = bytes(self._buffer[: len(MAGIC)])

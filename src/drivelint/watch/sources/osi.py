@@ -122,16 +122,16 @@ class FileReceiver:
         if self._ended:
             return None
         data = self._file.read(timeout_s)
-        found = self._cutter.cut(data or b"", ended=data is None)
+        messages = self._cutter.cut(data or b"", ended=data is None)
         if self._cutter.trouble is not None:
             self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing after that is read")
         self._ended = data is None or self._cutter.trouble is not None
-        return found or (None if self._ended else [])
+        return messages or (None if self._ended else [])
 
     def notes(self) -> list[str]:
         """See `Receiver`."""
-        found, self._notes = self._notes, []
-        return found
+        new_notes, self._notes = self._notes, []
+        return new_notes
 
     def close(self) -> None:
         """See `Receiver`."""
@@ -154,17 +154,17 @@ class StreamReceiver:
         if self._ended:
             return None
         blocks = self._reader.take(timeout_s)
-        found = self._cutter.cut(b"".join(blocks or ()), ended=blocks is None)
+        messages = self._cutter.cut(b"".join(blocks or ()), ended=blocks is None)
         if self._cutter.trouble is not None:
             self._notes.append(f"{self._cutter.trouble}: nothing after that is read")
         self._ended = blocks is None or self._cutter.trouble is not None
-        return found or (None if self._ended else [])
+        return messages or (None if self._ended else [])
 
     def notes(self) -> list[str]:
         """See `Receiver`."""
-        found = [f"{self._where}: {note}" for note in self._notes]
-        del self._notes[: len(found)]  # the thread may have added more
-        return found
+        new_notes = [f"{self._where}: {note}" for note in self._notes]
+        del self._notes[: len(new_notes)]  # the thread may have added more
+        return new_notes
 
     def close(self) -> None:
         """See `Receiver`."""
@@ -217,18 +217,18 @@ class DatagramReceiver:
 
     def take(self, timeout_s: float) -> list[bytes] | None:
         """See `Receiver`."""
-        found = self._reader.take(timeout_s)
-        self._ended = found is None
-        return found
+        messages = self._reader.take(timeout_s)
+        self._ended = messages is None
+        return messages
 
     def notes(self) -> list[str]:
         """See `Receiver`. Losses are reported when their number has doubled since the last report, and at the end."""
-        found, self._notes = [f"{self._where}: {note}" for note in self._notes], []
+        new_notes, self._notes = [f"{self._where}: {note}" for note in self._notes], []
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):
             self._told = losses.total
-            found.append(f"{self._where}: lost so far: {losses.summary_text()}")
-        return found
+            new_notes.append(f"{self._where}: lost so far: {losses.summary_text()}")
+        return new_notes
 
     def close(self) -> None:
         """See `Receiver`."""

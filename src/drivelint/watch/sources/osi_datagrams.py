@@ -69,7 +69,7 @@ class Losses:
             f"{plural(self.strange, 'datagram')} of no OSI message": self.strange,
             f"{plural(self.foreign, 'datagram')} of another sender": self.foreign,
         }
-        return ", ".join(what for what, n in counts.items() if n)
+        return ", ".join(text for text, n in counts.items() if n)
 
 
 class MessageAssembler:

@@ -27,7 +27,7 @@ class MessageCutter:
     def cut(self, data: bytes, *, ended: bool = False) -> list[bytes]:
         """Add bytes, and return the complete messages. `ended`: no more bytes come, so that a remainder is `trouble`."""
         self._buffer += data
-        found: list[bytes] = []
+        messages: list[bytes] = []
         place = 0
         while self.trouble is None:
             begin = place + LENGTH_FIELD_BYTES
@@ -48,11 +48,11 @@ class MessageCutter:
             if not sure and len(self._buffer) > end and not _is_message_start(self._buffer, end):
                 self._stop_cutting(place, f"no message of {length} bytes and another one behind it begin")
                 break
-            found.append(bytes(self._buffer[begin:end]))
+            messages.append(bytes(self._buffer[begin:end]))
             place = end
         del self._buffer[:place]
         self._at += place
-        return found
+        return messages
 
     def _stop_cutting(self, place: int, reason: str) -> None:
         self.trouble = f"{reason} at byte {self._at + place}"

@@ -27,14 +27,14 @@ class StaticContent:
             truth = _ground_truth(_decoded_message(first, name), name)
         except DecodeError:
             return
-        kept = message_class("GroundTruth")()
+        static = message_class("GroundTruth")()
         for field in _FIELDS_OF_FIRST_MESSAGE:
-            _copy_field(truth, kept, field)
-        kept.traffic_light.extend(truth.traffic_light)
-        for bulb in kept.traffic_light:
+            _copy_field(truth, static, field)
+        static.traffic_light.extend(truth.traffic_light)
+        for bulb in static.traffic_light:
             for field in _LIGHT_STATE_FIELDS:
                 bulb.classification.ClearField(field)
-        self._first = kept
+        self._first = static
 
     def add_to_message(self, data: bytes) -> bytes:
         """Return a later message with the static content of the first one, so that a log can start with it.
@@ -51,12 +51,12 @@ class StaticContent:
         for field in _FIELDS_OF_FIRST_MESSAGE:
             truth.ClearField(field)
             _copy_field(self._first, truth, field)
-        named = {bulb.id.value: bulb for bulb in truth.traffic_light}
+        bulb_by_id = {bulb.id.value: bulb for bulb in truth.traffic_light}
         for bulb in self._first.traffic_light:
-            if bulb.id.value not in named:
+            if bulb.id.value not in bulb_by_id:
                 truth.traffic_light.append(bulb)
-            elif not named[bulb.id.value].HasField("base"):
-                _add_place_and_lanes(named[bulb.id.value], bulb)
+            elif not bulb_by_id[bulb.id.value].HasField("base"):
+                _add_place_and_lanes(bulb_by_id[bulb.id.value], bulb)
         whole: bytes = message.SerializeToString(deterministic=True)
         return whole
 
@@ -82,8 +82,8 @@ def _copy_field(source: Any, target: Any, field: str) -> None:
 
 def _add_place_and_lanes(bulb: Any, first: Any) -> None:
     """Add the place and lanes from the first message to a traffic-light bulb that has only a state."""
-    shown = type(bulb).FromString(bulb.SerializeToString())
+    state = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
     for field in _LIGHT_STATE_FIELDS:
-        if shown.classification.HasField(field):
-            setattr(bulb.classification, field, getattr(shown.classification, field))
+        if state.classification.HasField(field):
+            setattr(bulb.classification, field, getattr(state.classification, field))

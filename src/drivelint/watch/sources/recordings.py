@@ -64,14 +64,14 @@ class McapRecording:
     def add(self, messages: Sequence[LiveMessage]) -> None:
         """Write messages as a chunk, after their new schemas and channels."""
         records, entries, at = [], [], 0
-        for each in messages:
-            channel = self._channel_id(each.channel)
-            size, number = _MESSAGE_FIELDS_BYTES + len(each.content), self._count % _SEQUENCE_MODULUS
-            head = _MESSAGE_HEADER.pack(Opcode.MESSAGE, size, channel, number, each.log_ns, each.log_ns)
+        for message in messages:
+            channel = self._channel_id(message.channel)
+            size, number = _MESSAGE_FIELDS_BYTES + len(message.content), self._count % _SEQUENCE_MODULUS
+            head = _MESSAGE_HEADER.pack(Opcode.MESSAGE, size, channel, number, message.log_ns, message.log_ns)
             self._count += 1
-            records += [head, each.content]
-            entries.append((channel, number, each.log_ns, at))
-            at += len(head) + len(each.content)
+            records += [head, message.content]
+            entries.append((channel, number, message.log_ns, at))
+            at += len(head) + len(message.content)
         if entries:
             self._sink.add_chunk(b"".join(records), message_index(entries))
         self._file.flush()
@@ -84,8 +84,8 @@ class McapRecording:
 
     def _channel_id(self, live_channel: LiveChannel) -> int:
         """Return the id of a channel; announce the channel if it is new."""
-        for number, known in self._sink.channels.items():
-            schema = replace(self._sink.schemas[known.schema_id], id=0)
-            if (known.topic, known.message_encoding, schema) == live_channel:
+        for number, channel in self._sink.channels.items():
+            schema = replace(self._sink.schemas[channel.schema_id], id=0)
+            if (channel.topic, channel.message_encoding, schema) == live_channel:
                 return number
         return self._sink.add_channel(*live_channel)

@@ -46,9 +46,9 @@ class Replay:
         if self._halted or self._at >= len(self._times):
             return None
         end = self._number_of_due_steps(timeout_s)
-        found = [Frame(int(t_ns), None, 0) for t_ns in self._times[self._at : end]]
+        frames = [Frame(int(t_ns), None, 0) for t_ns in self._times[self._at : end]]
         self._at = end
-        return found
+        return frames
 
     def _number_of_due_steps(self, timeout_s: float) -> int:
         """Return how many steps are due, after a wait of at most `timeout_s`."""

@@ -62,15 +62,19 @@ class SumoSource(WindowFileSource):
 
     def __init__(self, config: Path, folder: Path, *, span_s: float, until_s: float | None) -> None:
         options = _configuration(config)
-        found = [name for name in _ACTOR_OMITTING_OPTIONS if any(each.tag == name for each in options.iter())]
+        omitting = [
+            name for name in _ACTOR_OMITTING_OPTIONS if any(candidate.tag == name for candidate in options.iter())
+        ]
         self._notes = (
-            [f"{config.name}: {name_list(found)}: actors that SUMO does not write after that are not judged"]
-            if found
+            [f"{config.name}: {name_list(omitting)}: actors that SUMO does not write after that are not judged"]
+            if omitting
             else []
         )
         base = config.stem.replace(".", "-")  # the reader finds the file of lights by the name before the first dot
-        own = next(each for n in count(1) if not (each := folder / (base if n == 1 else f"{base}-{n}")).exists())
-        self.recording = own / f"{base}.fcd.xml"
+        own_folder = next(
+            candidate for n in count(1) if not (candidate := folder / (base if n == 1 else f"{base}-{n}")).exists()
+        )
+        self.recording = own_folder / f"{base}.fcd.xml"
         self._types: dict[bytes, VehicleType | None] = {}
         self._files: dict[Path, tuple[BinaryIO, bytes]] = {}
         self._sumo = SumoProcess(
@@ -108,8 +112,8 @@ class SumoSource(WindowFileSource):
 
     def notes(self) -> Sequence[str]:
         """Return, on the first call, a note on actors that the configuration leaves out of the recording."""
-        found, self._notes = self._notes, []
-        return found
+        new_notes, self._notes = self._notes, []
+        return new_notes
 
     def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:  # noqa: ARG002 - as in all sources
         """Write these steps as floating car data, and the types and lights beside it."""
@@ -159,12 +163,12 @@ class SumoSource(WindowFileSource):
 
     @staticmethod
     def _vtypes_xml(types: dict[bytes, VehicleType | None]) -> bytes:
-        known = [
+        lines = [
             f'<vType id="{name.decode()}" vClass="{kind.vehicle_class}" length="{kind.length_m!r}" width="{kind.width_m!r}"/>\n'
             for name, kind in sorted(types.items())
             if kind is not None
         ]
-        return "".join(["<routes>\n", *known, "</routes>\n"]).encode()
+        return "".join(["<routes>\n", *lines, "</routes>\n"]).encode()
 
 
 def _companion_file(log: Path, kind: str) -> Path:
@@ -188,5 +192,5 @@ def _configuration(config: Path) -> etree._Element:
 
 
 def _precision_decimals(options: etree._Element) -> int:
-    said: Iterable[str | None] = (each.get("value", each.get("v")) for each in options.iter("precision"))
-    return max((int(text) for text in said if text is not None and text.strip().isdecimal()), default=0)
+    texts: Iterable[str | None] = (option.get("value", option.get("v")) for option in options.iter("precision"))
+    return max((int(text) for text in texts if text is not None and text.strip().isdecimal()), default=0)

@@ -69,10 +69,10 @@ def find_sumo_program_and_home() -> tuple[str, str | None]:
 
         homes.append(sumo.SUMO_HOME)
     for home in homes:
-        if home and (found := shutil.which("sumo", path=str(Path(home) / "bin"))):
-            return found, home
-    if found := shutil.which("sumo"):
-        return found, None
+        if home and (program := shutil.which("sumo", path=str(Path(home) / "bin"))):
+            return program, home
+    if program := shutil.which("sumo"):
+        return program, None
     raise UsageError(f"{_NO_SUMO_MESSAGE}, or set SUMO_HOME")
 
 
@@ -107,7 +107,7 @@ class SumoProcess:
                     con.trafficlight.subscribe(light, (self._light_state,))
             undo.pop_all()
         self._ends_empty = end_s < 0
-        self._end_s = min(each for each in (end_s if end_s >= 0 else inf, until_s) if each is not None)
+        self._end_s = min(limit_s for limit_s in (end_s if end_s >= 0 else inf, until_s) if limit_s is not None)
 
     @property
     def output_head(self) -> bytes:
@@ -119,11 +119,11 @@ class SumoProcess:
         with self._guarded_connection() as con:
             con.simulationStep()
             lights = con.trafficlight.getAllSubscriptionResults()
-        if (found := self._steps.take_step(_STEP_TIMEOUT_S)) is None:
+        if (content := self._steps.take_step(_STEP_TIMEOUT_S)) is None:
             raise TraceError(
                 f"{self._config}: SUMO wrote no floating car data of a step: leave that to SUMO's defaults"
             )
-        return SumoStep(*found, {light: states[self._light_state] for light, states in sorted(lights.items())})
+        return SumoStep(*content, {light: states[self._light_state] for light, states in sorted(lights.items())})
 
     def is_over(self) -> bool:
         """Return whether the simulation is at its end."""
@@ -137,11 +137,11 @@ class SumoProcess:
         # a type that was changed for a single vehicle is called BASE@ID, after its original type BASE
         parts = name.split("@")
         with self._guarded_connection() as con:
-            known = con.vehicletype
+            types = con.vehicletype
             for n in range(len(parts), 0, -1):
                 base = "@".join(parts[:n])
                 with suppress(self._refusal):
-                    return VehicleType(known.getVehicleClass(base), known.getLength(base), known.getWidth(base))
+                    return VehicleType(types.getVehicleClass(base), types.getLength(base), types.getWidth(base))
         return None
 
     def end(self) -> None:
@@ -166,13 +166,13 @@ class SumoProcess:
 
     def _start_and_connect(self, precision: int) -> None:
         """Start SUMO and connect to it; try another port if another program took the first."""
-        found, home = find_sumo_program_and_home()
+        program, home = find_sumo_program_and_home()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
         for start in range(_MOST_START_ATTEMPTS):
             with socket.create_server((HOST, 0)) as free:
                 port = free.getsockname()[1]
             options = [*_SUMO_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
-            command = [found, "-c", str(self._config), "--remote-port", str(port)]
+            command = [program, "-c", str(self._config), "--remote-port", str(port)]
             command += [part for name, value in options for part in (f"--{name}", value)]
             # in a session of its own: only drivelint receives Ctrl-C, and then ends SUMO
             self._process = subprocess.Popen(  # noqa: S603 - the user chose to run SUMO
@@ -217,8 +217,8 @@ class SumoProcess:
                 code = self._process.wait(GRACE_BEFORE_KILL_S)
         lines = [line for line in self._output_text().splitlines() if not line.startswith(("Warning:", "Quitting"))]
         first = next((n for n, line in enumerate(lines) if line.startswith("Error:")), 0)
-        told = one_line("\n".join(line.removeprefix("Error:").strip() for line in lines[first:]))
-        return TraceError(f"{self._config}: SUMO: {told or f'it ended with exit code {code}'}")
+        message = one_line("\n".join(line.removeprefix("Error:").strip() for line in lines[first:]))
+        return TraceError(f"{self._config}: SUMO: {message or f'it ended with exit code {code}'}")
 
     def _output_text(self) -> str:
         self._messages.seek(0)
