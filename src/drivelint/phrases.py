@@ -50,15 +50,19 @@ def terminal_safe_json(text: str) -> str:
     return _TERMINAL_UNSAFE_PATTERN_IN_JSON.sub(lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
+_MOST_HINTED_WORDS: Final = 30
+"""The most words that a hint lists: more are no help."""
+
+
 def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, prefix: str = "") -> str:
-    """Return "did you mean 'x'?" for the most similar known word, ignoring case; if none is similar, "known are ...".
+    """Return "did you mean 'x'?" for the most similar known word, ignoring case; if none is similar, "known are ..." with the first.
 
     `prefix` is put before the word, in place of quotes.
     """
     words = list(dict.fromkeys(known_words))
     nearest = nearest_word(word, words, cutoff=cutoff)
     if nearest is None:
-        return f"known are {', '.join(words)}"
+        return f"known are {name_list(words, _MOST_HINTED_WORDS)}"
     return f"did you mean {prefix}{nearest}?" if prefix else f"did you mean {nearest!r}?"
 
 

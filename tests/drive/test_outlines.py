@@ -8,6 +8,7 @@ import pytest
 
 from drivelint.report.progress import Silent
 from drivelint.run import CheckOptions, check
+from drivelint.watch.sources.osi_static import StaticContent
 from tests.formats.commonroad.scenario_text import state
 from tests.formats.logs import actors, put, quality, read
 from tests.formats.osi import osi_file
@@ -156,3 +157,16 @@ def test_buildings_of_a_scenario(shape: str, expected: str, tmp_path: Path) -> N
 @pytest.mark.parametrize("shape", ["<ellipse/>", "<circle><radius>wide</radius></circle>", corners((0, 0), (1, 1)), ""])
 def test_a_building_without_a_shape_is_named(shape: str, tmp_path: Path) -> None:
     assert "not read: 9" in quality(read(scenario(tmp_path, shape), ego="1"))["unread_obstacle"]["message"]
+
+
+def test_a_later_window_of_a_watched_log_has_the_things_of_the_first_message(tmp_path: Path) -> None:
+    frames = drive()
+    stand(frames[0], PYLON, 8.0)
+    stand(frames[5], PYLON, 8.0)
+    content = StaticContent(frames[0].SerializeToString(), "osi3.GroundTruth")
+    for begin in (4, 5):
+        first = osi_file.message("GroundTruth")
+        first.ParseFromString(content.add_to_message(frames[begin].SerializeToString()))
+        row = quality(read(osi_file.write(tmp_path / "a.osi", [first, *frames[begin + 1 :]])))["outline_contact"]
+        assert row["message"].count("pylon 41") == 1
+        assert row["n"] == 9

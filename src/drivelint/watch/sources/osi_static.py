@@ -15,10 +15,12 @@ _FIELDS_OF_FIRST_MESSAGE: Final = (
 """Fields that the reader takes from the first message only, see `formats.osi.decode.read_first_message`."""
 _LIGHT_STATE_FIELDS: Final = ("color", "mode")
 """The fields of a traffic light that change over time; the others are copied from the first message, too."""
+_ADDED_FIELD: Final = "stationary_object"
+"""Things that do not move: a later message may have others, or none, because they stand in the first message."""
 
 
 class StaticContent:
-    """The map, projection and traffic lights of the first message; empty if this message cannot be decoded."""
+    """The map, projection, traffic lights and stationary objects of the first message; empty if this message cannot be decoded."""
 
     def __init__(self, first: bytes, name: str) -> None:
         self._name = name
@@ -30,6 +32,7 @@ class StaticContent:
         static = message_class("GroundTruth")()
         for field in _FIELDS_OF_FIRST_MESSAGE:
             _copy_field(truth, static, field)
+        _copy_field(truth, static, _ADDED_FIELD)
         static.traffic_light.extend(truth.traffic_light)
         for bulb in static.traffic_light:
             for field in _LIGHT_STATE_FIELDS:
@@ -51,6 +54,7 @@ class StaticContent:
         for field in _FIELDS_OF_FIRST_MESSAGE:
             truth.ClearField(field)
             _copy_field(self._first, truth, field)
+        _copy_field(self._first, truth, _ADDED_FIELD)  # the reader counts what is there twice once
         bulb_by_id = {bulb.id.value: bulb for bulb in truth.traffic_light}
         for bulb in self._first.traffic_light:
             if bulb.id.value not in bulb_by_id:
