@@ -125,6 +125,30 @@ def test_signs_of_the_lesser_road(kind: str, stem: tuple[str, str], sign: str | 
     assert lines == ([("st_0", "connection")] if sign == "stop" else [])
 
 
+@pytest.mark.parametrize(
+    ("of_lane", "of_edge", "s_m"),
+    [
+        ("", "", 50.0),
+        ('<stopOffset value="4"/>', "", 46.0),
+        ("", '<stopOffset value="4" vClasses="all"/>', 46.0),
+        ('<stopOffset value="3" vClasses="bus passenger"/>', '<stopOffset value="4"/>', 47.0),
+        ('<stopOffset value="3" vClasses="truck"/>', '<stopOffset value="4" exceptions="bicycle"/>', 46.0),
+        ('<stopOffset value="3" exceptions="passenger taxi"/>', "", 50.0),
+        ('<stopOffset value="80"/>', "", 0.0),
+        ('<stopOffset value="-1"/>', "", 50.0),
+        ('<stopOffset value="far"/>', "", 50.0),
+    ],
+)
+def test_cars_stop_before_the_end_of_the_lane_by_its_offset(of_lane: str, of_edge: str, s_m: float) -> None:
+    found = net(
+        edge("a", of_edge, lane("a", 0, "0,0 50,0", inside=of_lane), ends=("x", "c")),
+        edge("b", lane("b", 0, "60,0 99,0"), ends=("c", "y")),
+        link("a", "b", "o", more='tl="L" linkIndex="7"'),
+    )
+    assert values(found, "stop_line", "lanelet_id lane_s_m") == [("a_0", s_m)]
+    assert values(found, "traffic_signal", "lane_s_m") == [50.0]
+
+
 def test_who_turns_across_the_main_road_has_no_sign() -> None:
     found = net(
         edge("a", lane("a", 0, "0,0 50,0"), lane("a", 1, "0,3.2 50,3.2"), ends=("x", "c")),

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.formats.safe_xml import number_or_nan
 from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.tables import Rows, stop_line_row
 
@@ -26,16 +27,46 @@ _JUNCTION_TYPES_WITH_SIGNS: Final = frozenset({"priority", "priority_stop", "all
 """Types of junctions with signs on the minor roads. At other types, right goes before left, lights decide, or the rule is not known."""
 _SIGN_OF_LINK_STATE: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _U_TURN_DIRECTION: Final = "t"
+_CAR: Final = "passenger"
 
 
 def signal_and_stop_line_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
-    """Return rows of `traffic_signal` and of `stop_line`: a stop line is at the end of each lane with a light or a stop sign."""
+    """Return rows of `traffic_signal` and of `stop_line`.
+
+    A stop line is at the end of each lane with a light or a stop sign, or before it by the `<stopOffset>` for cars.
+    """
     links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
     signals, lines = _light_rows_and_lanes_ending_at_lights(links, lanes)
     signed, stops = _sign_rows_and_lanes_ending_at_stop_signs(root, links, lanes)
     lines |= stops
-    rows = [stop_line_row(f"end of {name}", name, lanes[name].line.length, "connection") for name in sorted(lines)]
+    offsets = _stop_offsets_m(root)
+    rows = [
+        stop_line_row(f"end of {name}", name, max(lanes[name].line.length - offsets.get(name, 0.0), 0.0), "connection")
+        for name in sorted(lines)
+    ]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
+
+
+def _stop_offsets_m(root: etree._Element) -> dict[str, float]:
+    """Return lane -> how far before its end cars stop (m); the offset of a lane takes precedence over that of its edge."""
+    offsets: dict[str, float] = {}
+    for edge in root.iterfind("edge"):
+        for lane in edge.iterfind("lane"):
+            offset = next(
+                (item for item in (*lane.iterfind("stopOffset"), *edge.iterfind("stopOffset")) if _is_for_cars(item)),
+                None,
+            )
+            metres = number_or_nan(None if offset is None else offset.get("value"))
+            if metres > 0.0:
+                offsets[lane.get("id", "")] = metres
+    return offsets
+
+
+def _is_for_cars(offset: etree._Element) -> bool:
+    """Return whether a stop offset is for cars: `vClasses` names who stops there, `exceptions` who does not."""
+    if (exceptions := offset.get("exceptions")) is not None:
+        return _CAR not in exceptions.split()
+    return bool({_CAR, "all"} & set(offset.get("vClasses", "all").split()))
 
 
 def _light_rows_and_lanes_ending_at_lights(
