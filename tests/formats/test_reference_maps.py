@@ -32,7 +32,7 @@ MAPS = {
     "maps/fabriksgatan_traffic_lights.xodr": ("rht", "junctions", 16, 44, 40),
     "maps/multi_intersections.xodr": ("rht", "junctions", 63, 242, 240),
     "maps/parking_demo.xodr": ("rht", "attribute", 7, 31, 21),
-    "maps/straight_500m_signs.xodr": ("rht", "default", 1, 6, 0),
+    "maps/straight_500m_signs.xodr": ("rht", "default", 1, 12, 6),  # 6 lanes on a rural road, on a town's behind it
     "maps/two_plus_one.xodr": ("rht", "attribute", 1, 17, 12),
     "maps/ut_highway_exit.xodr": ("rht", "attribute", 5, 24, 19),
     "maps/ut_lane_offset_intersection.xodr": ("rht", "attribute", 10, 25, 16),

@@ -29,8 +29,20 @@ class NaiveMap:
         self.reference = cache(self._reference)
 
     def sections(self, road: str) -> list[tuple[float, float]]:
+        return [(start, end) for _, start, end in self._pieces(road)]
+
+    def _pieces(self, road: str) -> list[tuple[int, float, float]]:
+        """Return place in the file, start and end of each lane section, cut where the type of the road changes; later pieces come last."""
         starts = [float(s.attrib["s"]) for s in self.roads[road].findall("lanes/laneSection")]
-        return list(zip(starts, [*starts[1:], float(self.roads[road].attrib["length"])], strict=True))
+        types = [(float(t.attrib["s"]), t.attrib["type"]) for t in self.roads[road].findall("type")]
+        changes = [s for (_, before), (s, kind) in pairwise(types) if kind != before]
+        first, later = [], []
+        for place, (start, end) in enumerate(pairwise([*starts, float(self.roads[road].attrib["length"])])):
+            cuts = [start, *(s for s in changes if start + 1.0 < s < end - 1.0), end]
+            whole, *rest = [(place, a, b) for a, b in pairwise(cuts)]
+            first.append(whole)
+            later += rest
+        return [*first, *later]
 
     def _reference(self, road: str, s: float) -> tuple[float, float, float]:
         geometries = self.roads[road].findall("planView/geometry")
@@ -60,7 +72,7 @@ class NaiveMap:
 
     def edges(self, road: str, section: int, lane: int, s: float) -> tuple[Point, Point]:
         """Return the inner and the outer edge of a lane."""
-        element = self.roads[road].findall("lanes/laneSection")[section]
+        element = self.roads[road].findall("lanes/laneSection")[self._pieces(road)[section][0]]
         start = float(element.attrib["s"])
         inner = _value(self.roads[road].findall("lanes/laneOffset"), "s", 0.0, s)
         side = 1 if lane > 0 else -1
